@@ -87,7 +87,7 @@ def fuse(
 
 def _empty(t_ns: int) -> DelayBuffer[S]:
     """A buffer that has seen nothing; it reaches back a second, for what is already on its way."""
-    base: Snapshot[S] = Snapshot(t_ns=t_ns - START_REACH_NS, state=None, tally=Tally())
+    base: Snapshot[S] = Snapshot(t_ns=t_ns - START_REACH_NS, told_ns=t_ns, state=None, tally=Tally())
     return DelayBuffer(base=base, entries=(), late=0, late_in_a_row=0)
 
 

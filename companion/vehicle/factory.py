@@ -40,12 +40,14 @@ def make_estimator(
 def _warm_up(kind: EstimatorKind) -> None:
     """Do once all that an estimator can be asked."""
     estimator = _make(EstimatorConfig(), Deck(antenna_to_pad_m=(1.0, 0.0, 0.0), half_width_m=10.0), kind)
-    sizes = {Quantity.HEADING: 1, Quantity.YAW_RATE: 1, Quantity.ACCELERATION: 1, Quantity.TILT: 4}
+    sizes = {Quantity.HEADING: 1, Quantity.YAW_RATE: 1, Quantity.ACCELERATION: 1, Quantity.TILT: 4, Quantity.SURFACE: 4}
     memory: EstimatorMemory | None = None
     for i, quantity in enumerate((*Quantity, *Quantity)):
-        n = sizes.get(quantity, 3)
-        measurement = Measurement(t_ns=i * 10**8, quantity=quantity, value=np.full(n, 0.1), covariance=np.eye(n))
-        memory = estimator.fuse(memory, [measurement])
+        value = np.full(sizes.get(quantity, 3), 0.1)
+        covariance = 1e-2 * np.eye(len(value))  # so sure that it settles, and takes a tilt, too
+        memory = estimator.fuse(
+            memory, [Measurement(t_ns=i * 10**7, quantity=quantity, value=value, covariance=covariance)]
+        )
     now_ns = 10**9
     estimator.estimate(memory, now_ns)
     estimator.forecast(memory, now_ns, np.array([0.0, 1.0]))

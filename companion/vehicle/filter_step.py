@@ -106,9 +106,17 @@ class Tally(Struct, frozen=True, kw_only=True):
 
 
 class Snapshot(Struct, Generic[S], frozen=True, kw_only=True, eq=False):
-    """The filter at `t_ns`; the state is None until the first place."""
+    """The filter at a moment.
+
+    Attributes:
+        t_ns: when.
+        told_ns: of the newest that it has heard of the vehicle, used or not.
+        state: None until the first place.
+        tally: of what came until then.
+    """
 
     t_ns: int
+    told_ns: int
     state: S | None
     tally: Tally
 
@@ -119,8 +127,8 @@ def nis_threshold(gate_probability: float | None, dof: int) -> float:
 
 
 def is_forgotten(config: BufferConfig, snapshot: Snapshot[S], t_ns: int) -> bool:
-    """Return whether at `t_ns` the filter has heard nothing for so long that it restarts: a stamp of 0, say."""
-    return t_ns - snapshot.t_ns > config.forget_after_s * 1e9
+    """Return whether at `t_ns` nothing was heard of the vehicle for so long that the filter restarts."""
+    return t_ns - snapshot.told_ns > config.forget_after_s * 1e9
 
 
 def step(
@@ -128,51 +136,52 @@ def step(
 ) -> tuple[Snapshot[S], float | None]:
     """Predict to the measurement, then fuse it, gate it, or recover on it."""
     t_ns = measurement.t_ns
+    is_of_drone = measurement.quantity in OF_DRONE
     if snapshot.state is None or is_forgotten(config, snapshot, t_ns):
-        return _start(model, snapshot, measurement), None
-    state = snapshot.state
+        return snapshot if is_of_drone else _start(model, snapshot, measurement), None
+    state, told_ns = snapshot.state, snapshot.told_ns if is_of_drone else t_ns
     if t_ns > snapshot.t_ns:
         state = model.predict(state, (t_ns - snapshot.t_ns) * 1e-9)
     update = model.update(state, measurement)
     if update is None:
-        return Snapshot(t_ns=t_ns, state=state, tally=snapshot.tally), None
+        return Snapshot(t_ns=t_ns, told_ns=told_ns, state=state, tally=snapshot.tally), None
     rank = RANK[measurement.quantity]
     nis_per_dof = update.nis / update.dof
     if update.gate_nis <= nis_threshold(config.gate_probability, update.dof):
-        return Snapshot(t_ns=t_ns, state=update.state, tally=_accept(snapshot.tally, rank, t_ns, update)), nis_per_dof
+        tally = _accept(snapshot.tally, rank, t_ns, update)
+        return Snapshot(t_ns=t_ns, told_ns=told_ns, state=update.state, tally=tally), nis_per_dof
     since_ns = snapshot.tally.rejected_since_ns[rank]
     is_new = since_ns is None or t_ns - since_ns < config.recover_after_s * 1e9
-    if is_new or measurement.quantity in OF_DRONE:
-        return Snapshot(t_ns=t_ns, state=state, tally=_reject(snapshot.tally, rank, t_ns)), nis_per_dof
-    return _recover(model, Snapshot(t_ns=t_ns, state=state, tally=snapshot.tally), measurement), nis_per_dof
+    if is_new or is_of_drone:
+        tally = _reject(snapshot.tally, rank, t_ns)
+        return Snapshot(t_ns=t_ns, told_ns=told_ns, state=state, tally=tally), nis_per_dof
+    return _recover(model, state, snapshot.tally, measurement), nis_per_dof
 
 
 def _start(model: FilterModel[S], snapshot: Snapshot[S], measurement: Measurement) -> Snapshot[S]:
     """Start on a place; anything else waits for one."""
     tally = snapshot.tally
+    t_ns = measurement.t_ns
     if measurement.quantity is not model.placed_by:
-        return Snapshot(t_ns=measurement.t_ns, state=None, tally=tally)
-    accepted = _put(tally.accepted_ns, RANK[model.placed_by], measurement.t_ns)
+        return Snapshot(t_ns=t_ns, told_ns=t_ns, state=None, tally=tally)
+    accepted = _put(tally.accepted_ns, RANK[model.placed_by], t_ns)
     started = replace(tally, fused=tally.fused + 1, accepted_ns=accepted)
-    return Snapshot(t_ns=measurement.t_ns, state=model.start(measurement), tally=started)
+    return Snapshot(t_ns=t_ns, told_ns=t_ns, state=model.start(measurement), tally=started)
 
 
-def _recover(model: FilterModel[S], snapshot: Snapshot[S], measurement: Measurement) -> Snapshot[S]:
-    """Open the filter to data that it has rejected for too long, and fuse them."""
-    if snapshot.state is None:
-        return snapshot
-    state = model.recover(snapshot.state, measurement)
+def _recover(model: FilterModel[S], state: S, tally: Tally, measurement: Measurement) -> Snapshot[S]:
+    """Open the filter, predicted to data that it has rejected for too long, to them, and fuse them."""
+    state, t_ns, rank = model.recover(state, measurement), measurement.t_ns, RANK[measurement.quantity]
     update = model.update(state, measurement)
-    rank = RANK[measurement.quantity]
     tally = replace(
-        snapshot.tally,
-        recoveries=snapshot.tally.recoveries + 1,
-        sightings=_count_sighting(snapshot.tally, rank, is_rejected=True),
-        moves_to_sightings=snapshot.tally.moves_to_sightings + (measurement.quantity is Quantity.PAD),
-        accepted_ns=_put(snapshot.tally.accepted_ns, rank, measurement.t_ns),
+        tally,
+        recoveries=tally.recoveries + 1,
+        sightings=_count_sighting(tally, rank, is_rejected=True),
+        moves_to_sightings=tally.moves_to_sightings + (measurement.quantity is Quantity.PAD),
+        accepted_ns=_put(tally.accepted_ns, rank, t_ns),
         rejected_since_ns=_NEVER,
     )
-    return Snapshot(t_ns=measurement.t_ns, state=state if update is None else update.state, tally=tally)
+    return Snapshot(t_ns=t_ns, told_ns=t_ns, state=state if update is None else update.state, tally=tally)
 
 
 def _accept(tally: Tally, rank: int, t_ns: int, update: Update[S]) -> Tally:

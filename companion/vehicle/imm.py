@@ -25,6 +25,7 @@ from companion.vehicle.deck_motion import first_motion, learn, passed
 from companion.vehicle.filter_step import Update, wrapped
 from companion.vehicle.imm_frames import own_rate_opened_m2_s2, ranged_pad, wandering
 from companion.vehicle.imm_kernels import CURVATURE, HEADING
+from companion.vehicle.imm_mixing import Modes
 from companion.vehicle.imm_numbers import Deck, Numbers, noises_with, numbers_of, swing_of
 from companion.vehicle.imm_state import (
     KINDS,
@@ -39,6 +40,7 @@ from companion.vehicle.imm_state import (
     recover,
     split_fix,
     start_state,
+    without_heading,
 )
 from companion.vehicle.imm_swing import OWN_RATE
 from link.records import replace
@@ -47,6 +49,7 @@ SWINGING = np.array([10, 11, *TILT])
 TURNS = frozenset({Quantity.HEADING, Quantity.YAW_RATE})
 MOTIONS = frozenset({Quantity.POSITION, Quantity.VELOCITY})
 HEIGHTS = frozenset({Quantity.PAD, Quantity.SURFACE})
+_OUTAGE_S = 1.0  # of what tells how the vehicle moves: longer than any receiver's period
 TURN_AGE_MAX_S = 1.0  # of a sensor that is at work: several periods of the slowest
 
 
@@ -112,16 +115,11 @@ class ImmModel:
             R, bias_variance = split_fix(R, self.config.receivers)
             white_variance = largest(R)
         reading = (KINDS[measurement.quantity], _own(measurement.value), _own(R))
-        numbers = self.numbers
         tells_motion = measurement.quantity in MOTIONS
         tells_driving = tells_motion or measurement.quantity is self.placed_by
-        modes = state.modes
-        if tells_motion and state.unmeasured_s > 0.0:
-            noises = self._noises(state)
-            modes = judgement.expect_manoeuvres(modes, state.unmeasured_s, numbers.begins_after_s, noises)
-        modes, nis, gate_nis = judgement.take_reading(modes, reading, numbers.lever_m, numbers.course)
+        modes = self._after_silence(state) if tells_motion and state.unmeasured_s > 0.0 else state.modes
+        modes, nis, gate_nis = judgement.take_reading(modes, reading, self.numbers.lever_m, self.numbers.course)
         tells_turn = measurement.quantity in TURNS and self.placed_by is Quantity.POSITION
-        turn_age_s = 0.0 if tells_turn else state.turn_age_s  # what is only seen to turn is taken for a car
         deck = state.deck
         if deck is not None and measurement.quantity is Quantity.TILT:
             deck = learn(deck, (modes[2] @ modes[0])[SWINGING].tolist(), self._swing.lag_s)
@@ -132,7 +130,7 @@ class ImmModel:
             fix_white_variance_m2=white_variance,
             seen_age_s=0.0 if measurement.quantity is Quantity.PAD else state.seen_age_s,
             height_age_s=0.0 if measurement.quantity in HEIGHTS else state.height_age_s,
-            turn_age_s=turn_age_s,
+            turn_age_s=0.0 if tells_turn else state.turn_age_s,  # what is only seen to turn is taken for a car
             unmeasured_s=0.0 if tells_motion else state.unmeasured_s,
             deck=deck,
         )
@@ -186,6 +184,16 @@ class ImmModel:
             frame_offset_std_m=math.sqrt(float((weights @ covariances[:, OFFSET[:2], OFFSET[:2]]).max())),
             is_height_told=state.height_age_s < self.config.receivers.own_height_time_s,
         )
+
+    def _after_silence(self, state: ImmState) -> Modes:
+        """Return the modes for what moves after nothing told how: any model may have begun meanwhile.
+
+        Of a heading that was lost a velocity tells nothing: from one to the next it may have turned by half a turn.
+        """
+        modes = state.modes
+        if state.unmeasured_s > _OUTAGE_S and not is_heading_known(state, self.config):
+            modes = without_heading(modes)
+        return judgement.expect_manoeuvres(modes, state.unmeasured_s, self.numbers.begins_after_s, self._noises(state))
 
     @property
     def _known_variance(self) -> float:

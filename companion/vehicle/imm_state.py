@@ -18,7 +18,7 @@ from companion.vehicle import imm_sensors as sensors
 from companion.vehicle.deck_motion import DeckMotion
 from companion.vehicle.imm_kernels import BEND, CLOCK, CURVATURE, HEADING, LEAK
 from companion.vehicle.imm_mixing import Modes
-from companion.vehicle.imm_numbers import Numbers
+from companion.vehicle.imm_numbers import UNKNOWN_HEADING_VARIANCE, Numbers
 from companion.vehicle.imm_sensors import observe
 from companion.vehicle.imm_swing import MOUNT, OWN_RATE, ROLL, ROLL_RATE, SIZE, antenna_swing
 from companion.vehicle.steady_driving import SteadyDriving
@@ -37,6 +37,14 @@ def open_states(modes: Modes, indices: IndexArray, variances: Array) -> Modes:
     means, covariances, weights = modes
     opened = covariances.copy()
     opened[:, indices, indices] += variances
+    return means, opened, weights
+
+
+def without_heading(modes: Modes) -> Modes:
+    """Return all modes with a heading that may be anything."""
+    means, opened, weights = modes[0], modes[1].copy(), modes[2]
+    opened[:, HEADING, :] = opened[:, :, HEADING] = 0.0
+    opened[:, HEADING, HEADING] = UNKNOWN_HEADING_VARIANCE
     return means, opened, weights
 
 

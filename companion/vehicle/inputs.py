@@ -6,7 +6,7 @@ import numpy as np
 
 from companion.autopilots.state import AutopilotState
 from companion.core.data import Array, Measurement, OwnState, Quantity
-from companion.vehicle.surface import ATTITUDE_AGE_MAX_S
+from companion.vehicle.range_watch import ATTITUDE_AGE_MAX_S
 from link.frames.geodesy import LocalFrame, local_from_geodetic, scale_of
 from link.frames.rotations import roll_pitch_yaw_of, rotate, yaw_of
 from link.messages import Fix, FixVelocity, Matrix3, PadSighting, Quaternion, Vector3, VehicleImu

@@ -3,14 +3,17 @@
 import numpy as np
 from msgspec import Struct
 
-from companion.core.data import RangeReading
+from companion.core.data import OwnState, RangeReading
 from link.frames.rotations import rotate
+from link.messages import Vector3
 from link.records import replace
 
 _UNSEEN_M = 0.05  # which a drone has risen or sunk while every reading is the same to the centimetre: nothing measures
 _AGREEING = 5  # readings in a row: one or two may be of anything
 _AGREEING_M = 0.15  # of their median: a deck that heaves at 0.5 m/s has moved by as much within them
 _AGREEING_S = 0.6  # of a range finder at 10 Hz
+ATTITUDE_AGE_MAX_S = 0.15  # of a drone that turns at 0.5 rad/s: what is seen 5 m away is then 0.4 m off
+_UPRIGHT_MIN = 0.917  # 23 degrees; one that leans more turns too fast for the attitude to be that of the reading
 _LATELY_S = 10.0  # in which a drone comes from behind a vehicle to over it, and its own height wanders by half a metre
 
 
@@ -21,35 +24,37 @@ class RangeWatch(Struct, frozen=True, kw_only=True):
         newest_ns: when the newest was measured.
         same: the first of the newest ones that are all the same.
         recent: the last few surfaces, which have to agree: when each was seen, and its height in W.
-        lowest_m: height in W of the lowest surface that was seen lately.
-        lowest_ns: when.
+        lowest: surfaces lower than all after them, of the last seconds: when each was seen, and its height over the
+            vehicle, so that a road that climbs does not rise.
     """
 
     newest_ns: int | None = None
     same: RangeReading | None = None
     recent: tuple[tuple[int, float], ...] = ()
-    lowest_m: float = np.inf
-    lowest_ns: int = 0
+    lowest: tuple[tuple[int, float], ...] = ()
 
 
-def watch_ranges(watch: RangeWatch, seen: RangeReading) -> tuple[RangeWatch, float | None]:
+def watch_ranges(watch: RangeWatch, seen: RangeReading, vehicle_up_m: float | None) -> tuple[RangeWatch, float | None]:
     """Return what is kept, and how far the surface is above the lowest one lately, m; None of what is not believed.
 
     Args:
         watch: before.
         seen: a new reading.
+        vehicle_up_m: height of the vehicle in W then, None while it is not known.
     """
-    is_same = watch.same is not None and seen.distance_m == watch.same.distance_m
+    same = watch.same
+    is_same = same is not None and same.own is not None and seen.distance_m == same.distance_m
     watch = replace(watch, newest_ns=seen.t_ns, same=watch.same if is_same else seen)
     here_m = _surface_m(seen)
     if here_m is None:
         return watch, None
     watch = replace(watch, recent=(*watch.recent, (seen.t_ns, here_m))[-_AGREEING:])
-    if _is_stuck(watch, seen) or _is_alone(watch.recent):
+    if vehicle_up_m is None or _is_stuck(watch, seen) or _is_alone(watch.recent):
         return watch, None
-    if here_m < watch.lowest_m or seen.t_ns - watch.lowest_ns > _LATELY_S * 1e9:
-        watch = replace(watch, lowest_m=here_m, lowest_ns=seen.t_ns)
-    return watch, here_m - watch.lowest_m
+    over_m, oldest_ns = here_m - vehicle_up_m, seen.t_ns - round(_LATELY_S * 1e9)
+    lower = tuple(one for one in watch.lowest if oldest_ns <= one[0] <= seen.t_ns and one[1] < over_m)
+    lowest = (*lower, (seen.t_ns, over_m))
+    return replace(watch, lowest=lowest), over_m - lowest[0][1]
 
 
 def _is_stuck(watch: RangeWatch, seen: RangeReading) -> bool:
@@ -67,8 +72,13 @@ def _is_alone(recent: tuple[tuple[int, float], ...]) -> bool:
     return abs(here_m - float(np.median([height_m for _, height_m in recent]))) > _AGREEING_M
 
 
+def beam_of(own: OwnState) -> Vector3 | None:
+    """Return where the range finder looks in W, None of a drone that leans too far or whose attitude is old."""
+    beam = rotate(own.orientation_wxyz, (0.0, 0.0, -1.0))
+    return None if own.attitude_age_s > ATTITUDE_AGE_MAX_S or -beam[2] < _UPRIGHT_MIN else beam
+
+
 def _surface_m(seen: RangeReading) -> float | None:
     """Return the height in W of what was seen, as of the point whose place is reported, None if that was not known."""
-    if seen.own is None:
-        return None
-    return seen.own.position_enu_m[2] + seen.distance_m * rotate(seen.own.orientation_wxyz, (0.0, 0.0, -1.0))[2]
+    beam = None if seen.own is None else beam_of(seen.own)
+    return None if seen.own is None or beam is None else seen.own.position_enu_m[2] + seen.distance_m * beam[2]

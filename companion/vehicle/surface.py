@@ -11,15 +11,14 @@ import numpy as np
 
 from companion.config.touchdown import TouchdownConfig
 from companion.core.data import Array, Measurement, Quantity, RangeReading
-from link.frames.rotations import rotate
+from companion.vehicle.range_watch import beam_of
 from link.records import replace
 
-ATTITUDE_AGE_MAX_S = 0.15  # of a drone that turns at 0.5 rad/s: what is seen 5 m away is then 0.4 m off
 _AGE_MAX_NS = 500_000_000  # what is older says nothing new
-_UPRIGHT_MIN = 0.917  # 23 degrees; one that leans more turns too fast for the attitude to be that of the reading
 _TOO_HIGH_M = 1.0  # what is so far above the pad is not the pad: a person, a load, a bridge
 _TOO_LOW_M = 2.0  # two standard deviations of how far apart heights are before anything told them
 _STDS = 2.0
+_STEP_MIN_M = 0.6  # an own height wanders by as much in the time that is looked back: that is no step to a roof
 
 
 def surface_measurements(
@@ -38,10 +37,8 @@ def surface_measurements(
     """
     own = seen.own
     is_now = 0 <= t_ns - seen.t_ns <= _AGE_MAX_NS
-    if own is None or not is_now or own.attitude_age_s > ATTITUDE_AGE_MAX_S:
-        return ()
-    beam = rotate(own.orientation_wxyz, (0.0, 0.0, -1.0))
-    if -beam[2] < _UPRIGHT_MIN:
+    beam = None if own is None else beam_of(own)
+    if own is None or beam is None or not is_now:
         return ()
     place = np.array(own.position_enu_m) + seen.distance_m * np.array(beam)
     place[2] += config.range_finder.height_m - config.gear_height_m
@@ -78,7 +75,8 @@ def pad_height_seen(
     """
     east_m, north_m, up_m = (surface.value[:3] - pad_enu_m).tolist()
     half_m, rises_m = 0.5 * above_road_m, float(surface.value[3])
-    lowest_m = -min(half_m, _TOO_LOW_M) if rises_m < half_m else -_TOO_LOW_M
+    may_be_road = half_m > 0.0 and rises_m < max(half_m, _STEP_MIN_M)
+    lowest_m = -min(half_m, _TOO_LOW_M) if may_be_road else -_TOO_LOW_M
     is_beside = math.hypot(east_m, north_m) + _STDS * pad_std_m > half_width_m
     if is_beside or not lowest_m < up_m < _TOO_HIGH_M:
         return None

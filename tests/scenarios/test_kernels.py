@@ -18,7 +18,7 @@ def kernels_of_the_companion() -> Iterator[Dispatcher]:
 
 @pytest.mark.slow
 def test_what_the_companion_compiles_is_compiled_before_its_first_step() -> None:
-    scenario = load_scenario("circle_5+sensors=nominal").with_run(time_limit_s=16.0)
+    scenario = load_scenario("rough_road_5+sensors=nominal").with_run(time_limit_s=16.0)
     lockstep = Lockstep(scenario, seed=1)
     before = {id(kernel): len(kernel.signatures) for kernel in kernels_of_the_companion()}
     lockstep.run()

@@ -28,7 +28,7 @@ from companion.situation.phases import FOLLOWING_PHASES, LANDING_PHASES, Phase
 from companion.vehicle.hindsight import forget_instants, update_hindsight
 from companion.vehicle.pad import PadPath, pad_path
 from companion.vehicle.pad_reach import is_agreement_old
-from companion.vehicle.range_watch import watch_ranges
+from companion.vehicle.range_watch import RangeWatch, watch_ranges
 from companion.vehicle.surface import surface_measurements
 from link.records import replace
 
@@ -42,7 +42,9 @@ def update_vehicle(vehicle: VehicleMemory, inputs: StepInputs, system: System) -
     estimator, now_ns = vehicle.estimator, inputs.monotonic_ns
     measurements, seen = inputs.vehicle.measurements, inputs.autopilot.range_down
     if seen is not None and estimator is not None and vehicle.ranges.newest_ns != seen.t_ns <= inputs.t_ns:
-        ranges, rises_m = watch_ranges(vehicle.ranges, seen)
+        then = system.estimator.forecast(estimator, seen.t_ns, _PRESENT_OFFSETS_S)
+        vehicle_up_m = None if then is None else float(then.position_enu_m[0, 2])
+        ranges, rises_m = watch_ranges(vehicle.ranges, seen, vehicle_up_m)
         vehicle = replace(vehicle, ranges=ranges)
         if rises_m is not None:
             apart_std_m = 0.0 if _are_frames_one(vehicle, inputs, system) else math.inf
@@ -85,6 +87,7 @@ def _in_present_utc(vehicle: VehicleMemory, inputs: StepInputs) -> VehicleMemory
         fix_stamps=FixStamps(),
         contradictions=Contradictions(),
         sightings=SightingWatch(),
+        ranges=RangeWatch(),
     )
 
 

@@ -145,6 +145,20 @@ def test_vehicle_that_was_silent_for_long_is_forgotten_and_its_next_fix_begins_a
     assert not counted.asked_s
 
 
+def test_what_only_the_drone_tells_keeps_no_silent_vehicle_in_mind() -> None:
+    estimator = BufferedEstimator(model=MODEL, config=CONFIG)
+    before, now = fix(-FORGOTTEN_S, 5.0), fix(0.0, 1.0)
+    ranges = [fix(0.5 - FORGOTTEN_S + 0.5 * i, 9.0, Quantity.SURFACE) for i in range(2 * int(FORGOTTEN_S))]
+    memory = estimator.fuse(None, [before])
+    for one in ranges:
+        memory = estimator.fuse(memory, [one])
+    assert estimator.forecast(memory, now.t_ns, np.array([0.0, 0.2])) is None
+    memory = estimator.fuse(memory, [now])
+    assert memory is not None
+    assert memory.newest.state is not None
+    assert np.array_equal(memory.newest.state.mean, MODEL.start(now).mean)
+
+
 def test_vehicle_that_was_silent_for_a_while_is_not_forgotten() -> None:
     estimator = BufferedEstimator(model=MODEL, config=CONFIG)
     memory = estimator.fuse(None, [fix(0.0), fix(0.1)])

@@ -1,5 +1,7 @@
 """Which readings are believed: those that agree, that change as the drone moves; and how far a roof rises."""
 
+import math
+
 import pytest
 
 from companion.core.data import OwnState, RangeReading
@@ -22,11 +24,11 @@ def _reading(index: int, surface_m: float, *, height_m: float = HEIGHT_M, roll_r
     return RangeReading(t_ns=own.t_ns, distance_m=height_m - surface_m, own=own)
 
 
-def _watch(readings: list[RangeReading]) -> float | None:
-    """How far the last of them rises, None where it is not believed."""
+def _watch(readings: list[RangeReading], climbs_m: float = 0.0) -> float | None:
+    """How far the last of them rises, None where it is not believed, over a road that climbs by so much a period."""
     watch, rises_m = RangeWatch(), None
-    for seen in readings:
-        watch, rises_m = watch_ranges(watch, seen)
+    for i, seen in enumerate(readings):
+        watch, rises_m = watch_ranges(watch, seen, climbs_m * i)
     return rises_m
 
 
@@ -63,6 +65,40 @@ def test_roof_rises_above_the_road_that_was_seen_before_it_for_ten_seconds() -> 
     assert _watch(road + roof[:5]) == pytest.approx(1.5)
     assert _watch(road + roof[:190]) == pytest.approx(1.5)
     assert _watch(road + roof[:210]) == pytest.approx(0.0)
+
+
+@pytest.mark.parametrize("road_s", [12.0, 35.0])
+def test_road_is_known_for_ten_seconds_after_it_was_seen_last_however_long_it_was_seen(road_s: float) -> None:
+    count = round(road_s * 1e9 / PERIOD_NS)
+    road = [_reading(i, 0.1 + 0.02 * math.sin(i)) for i in range(count)]
+    roof = [_reading(count + i, 1.6) for i in range(220)]
+    assert _watch(road + roof[:195]) == pytest.approx(1.5, abs=0.05)
+    assert _watch(road + roof) == pytest.approx(0.0)
+
+
+def test_road_that_climbs_does_not_rise() -> None:
+    climbs_m = 0.06 * 8.0 * PERIOD_NS * 1e-9
+    road = [_reading(i, climbs_m * i) for i in range(400)]
+    assert _watch(road, climbs_m) == pytest.approx(0.0, abs=1e-9)
+    assert _watch(road) == pytest.approx(climbs_m * 200)  # of a vehicle that stays below
+
+
+def test_surface_seen_while_the_vehicle_is_not_placed_is_not_believed() -> None:
+    watch = RangeWatch()
+    for i in range(6):
+        watch, rises_m = watch_ranges(watch, _reading(i, 1.5), None)
+        assert rises_m is None
+
+
+def test_range_finder_that_was_stuck_before_the_drones_place_was_known_is_not_believed() -> None:
+    stuck = [_reading(i, 1.5 - 0.06 * i, height_m=HEIGHT_M - 0.06 * i) for i in range(6)]
+    assert _watch([RangeReading(t_ns=0, distance_m=stuck[0].distance_m), *stuck[1:]]) is None
+
+
+def test_drone_that_leans_far_sees_no_road() -> None:
+    road, roof = [_reading(i, -0.6, roll_rad=0.5) for i in range(6)], [_reading(6 + i, 1.6) for i in range(6)]
+    assert _watch(road) is None
+    assert _watch(road + roof) == pytest.approx(0.0)
 
 
 def test_single_low_reading_is_no_road() -> None:

@@ -156,6 +156,7 @@ def test_only_what_is_surely_within_the_pad_is_the_pads(away_m: Place, std_m: fl
         (-1.3, ROOF_M, 1.4, True),  # the road was seen, lower still
         (-2.1, ROOF_M, 1.4, False),
         (-0.2, 0.3, 0.0, False),
+        (-0.3, 0.3, 0.4, False),  # of a pad that low an own height that wanders looks like a step
         (-1.4, 3.0, 0.0, True),
         (-2.1, 5.0, 0.0, False),
         (0.9, ROOF_M, 0.0, True),
