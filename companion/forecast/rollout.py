@@ -4,12 +4,13 @@ All horizontal motion is told as its deviation from the pad's forecast, in W. A 
 datum, off the forecast by what the estimate may err, keeps its acceleration until that is released, and may brake,
 depart or turn in. What is known of it is `delay` older, but for the error of the estimate, which stays; a change of its
 acceleration is believed with the filter's lag, and what is known is carried on to the present with it.
-The virtual model follows what is known as the planner does near its target, by the jerk of a linear regulator of
-bandwidth W (Butterworth's third-order polynomial) within jerk and acceleration,
+The virtual model follows what is known as the planner does near its target: within jerk and acceleration, on the way of
+least jerk that ends there at rest after the planner's shortest time T, which is laid anew all the time,
 
-    j = W^3 (p - e) + 2 W^2 (v - e') + 2 W (a - s'')
+    j = 60 / T^3 (p - e) + 36 / T^2 (v - e') + 9 / T (a - s'')
 
-and the drone follows the model by its autopilot's cascade (`autopilots.response`), whose deviation gusts move. It leans
+and the drone follows the model by its autopilot's cascade (`autopilots.response`), whose deviation gusts move. The
+planner foresees that deviation, so e' is the velocity once the drone leans as the model accelerates. It leans
 for the pad's acceleration, by the cascade's a, and by what its integrator holds against the air: i' = -u / T, where
 a + i is what it is seen to lean against the air while it is pushed steadily, so that i = air + u at first. The way down
 is the planned one. A drone that sees, above where it commits, what it waits for stays at its height meanwhile, and
@@ -79,23 +80,37 @@ def _breaks_off(off: Array, height_m: float, sink_m_s: float, rules: Rules) -> b
 
 
 @compiled_kernel
-def _plan(model: Array, off: Array, known: Array, expected: Array, bounds: tuple[float, float, float]) -> None:
-    """Move the virtual model (3, 2) by one step, so that the drone comes over what is known of the pad.
+def steer(model: Array, state: Array, off: Array, known: Array, drone: Follower) -> Array:
+    """Return the jerk (2,) by which the drone comes over what is known of the pad.
+
+    Args:
+        model: (3, 2) the virtual model, off the pad's forecast.
+        state: (4, 2) of the cascade.
+        off: (2, 2) place and velocity of the drone off what is known of the pad.
+        known: (3, 2) of the pad, off its forecast.
+        drone: with how long a way takes.
+    """
+    to_come = (1.0 - drone.led_share) / drone.turns_hz * (state[2] - model[2])
+    rate, acceleration = off[1] + to_come, model[2] - known[2]
+    return np.asarray(-((60.0 * off[0] / drone.way_s + 36.0 * rate) / drone.way_s + 9.0 * acceleration) / drone.way_s)
+
+
+@compiled_kernel
+def plan(model: Array, jerk: Array, expected: Array, jerk_max_m_s3: float, most_m_s2: float) -> None:
+    """Move the virtual model (3, 2) by one step with a jerk (2,), within bounds.
 
     Args:
         model: off the pad's forecast.
-        off: (2, 2) place and velocity of the drone off what is known of the pad.
-        known: (3, 2) of the pad, off its forecast.
+        jerk: as `steer` returns it.
         expected: (2,) acceleration of the forecast.
-        bounds: bandwidth (rad/s), largest jerk (m/s^3) and acceleration (m/s^2).
+        jerk_max_m_s3: its bound.
+        most_m_s2: that of the acceleration.
     """
-    w, jerk_max_m_s3, most_m_s2 = bounds
-    jx = -w * (w * (w * off[0, 0] + 2.0 * off[1, 0]) + 2.0 * (model[2, 0] - known[2, 0]))
-    jy = -w * (w * (w * off[0, 1] + 2.0 * off[1, 1]) + 2.0 * (model[2, 1] - known[2, 1]))
-    share = DT_S * min(1.0, jerk_max_m_s3 / max(math.hypot(jx, jy), 1e-9))
-    ax, ay = expected[0] + model[2, 0] + jx * share, expected[1] + model[2, 1] + jy * share
-    size = math.hypot(ax, ay)
-    back = 1.0 if size <= most_m_s2 else max(most_m_s2, size - jerk_max_m_s3 * DT_S) / size
+    share = DT_S * min(1.0, jerk_max_m_s3 / max(math.hypot(jerk[0], jerk[1]), 1e-9))
+    bx, by = expected[0] + model[2, 0], expected[1] + model[2, 1]
+    ax, ay = bx + jerk[0] * share, by + jerk[1] * share
+    most_m_s2 = max(most_m_s2, math.hypot(bx, by) - jerk_max_m_s3 * DT_S)
+    back = min(1.0, most_m_s2 / max(math.hypot(ax, ay), 1e-9))
     model[2, 0], model[2, 1] = ax * back - expected[0], ay * back - expected[1]
     for i in range(2):
         model[0, i] += (model[1, i] + 0.5 * model[2, i] * DT_S) * DT_S
@@ -103,7 +118,7 @@ def _plan(model: Array, off: Array, known: Array, expected: Array, bounds: tuple
 
 
 @compiled_kernel
-def _follow(state: Array, before: Array, acceleration: Array, pushes: Array, drone: Follower) -> None:
+def follow(state: Array, before: Array, acceleration: Array, pushes: Array, drone: Follower) -> None:
     """Move the cascade's state (4, 2) by one step behind a model with that `acceleration` (2,), in gusts.
 
     Led setpoints bring the lean along with what has changed of the model's acceleration since the step `before` (2,).
@@ -169,8 +184,9 @@ def _fly(path: Array, samples: Samples, sample: int, descent: Descent, out: Arra
             return
         most_m_s2 = drone.level_m_s2 if height_m < drone.level_below_m else drone.acceleration_max_m_s2
         before_m_s2[:] = model[2]
-        _plan(model, off, known, expected, (drone.bandwidth_hz, drone.jerk_max_m_s3, most_m_s2))
-        _follow(state, before_m_s2, model[2], samples.pushes[sample, k], drone)
+        jerk = steer(model, state, off, known, drone)
+        plan(model, jerk, expected, drone.jerk_max_m_s3, most_m_s2)
+        follow(state, before_m_s2, model[2], samples.pushes[sample, k], drone)
 
 
 @compiled_kernel

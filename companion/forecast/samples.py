@@ -25,6 +25,7 @@ class Follower(NamedTuple):
     """How the drone follows: gains and lags of its cascade, of its planner, and the limits of both.
 
     `led_share` is of a change of the acceleration asked for what the lean follows at once: 1 where setpoints are led.
+    `way_s` is how long the planner's shortest way takes.
     """
 
     stiffness_per_s2: float
@@ -35,7 +36,7 @@ class Follower(NamedTuple):
     forgets_hz: float
     drag_per_s: float
     push_std_m_s2: float
-    bandwidth_hz: float
+    way_s: float
     believes_s: float
     acceleration_max_m_s2: float
     jerk_max_m_s3: float

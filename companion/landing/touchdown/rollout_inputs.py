@@ -29,7 +29,6 @@ _SLOW_M_S = 0.3  # slower than this a vehicle has no direction but its heading
 _SLOPE_FROM_M_S = 1.0  # from here on a vertical speed tells the grade
 # Lag with which an acceleration is believed: velocities at 10 Hz show a brake in 0.3 s, an accelerometer at once.
 _BELIEVES_S, _BELIEVES_BY_SENSOR_S = 0.3, 0.1
-_BANDWIDTH_TIMES = 4.0  # rest to rest in a time is what a linear law of this over that time takes
 _SENSOR_HOLD_NS = 1_000_000_000
 
 
@@ -138,7 +137,7 @@ def follower_of(memory: StepMemory, situation: Situation, inputs: StepInputs, co
         forgets_hz=cascade.forgets_hz,
         drag_per_s=DRAG_PER_S,
         push_std_m_s2=memory.forecast.gusts.push_std_m_s2,
-        bandwidth_hz=_BANDWIDTH_TIMES / config.guidance.mpc.intercept_time_min_s,
+        way_s=config.guidance.mpc.intercept_time_min_s,
         believes_s=_BELIEVES_BY_SENSOR_S if is_told else _BELIEVES_S,
         acceleration_max_m_s2=limits.acceleration_max_m_s2,
         jerk_max_m_s3=limits.jerk_max_m_s3,
