@@ -96,21 +96,25 @@ def steer(model: Array, state: Array, off: Array, known: Array, drone: Follower)
 
 
 @compiled_kernel
-def plan(model: Array, jerk: Array, expected: Array, jerk_max_m_s3: float, most_m_s2: float) -> None:
+def plan(model: Array, jerk: Array, expected: Array, air: Array, bounds: tuple[float, float, float]) -> None:
     """Move the virtual model (3, 2) by one step with a jerk (2,), within bounds.
 
     Args:
         model: off the pad's forecast.
         jerk: as `steer` returns it.
         expected: (2,) acceleration of the forecast.
-        jerk_max_m_s3: its bound.
-        most_m_s2: that of the acceleration.
+        air: (2,) thrust by mass that holds against the air.
+        bounds: of the jerk (m/s^3), the acceleration, and the horizontal thrust by mass beyond that of steady flight.
     """
+    jerk_max_m_s3, most_m_s2, leans_m_s2 = bounds
     share = DT_S * min(1.0, jerk_max_m_s3 / max(math.hypot(jerk[0], jerk[1]), 1e-9))
     bx, by = expected[0] + model[2, 0], expected[1] + model[2, 1]
     ax, ay = bx + jerk[0] * share, by + jerk[1] * share
-    most_m_s2 = max(most_m_s2, math.hypot(bx, by) - jerk_max_m_s3 * DT_S)
-    back = min(1.0, most_m_s2 / max(math.hypot(ax, ay), 1e-9))
+    size = max(math.hypot(ax, ay), 1e-9)
+    along_m_s2, holds_m_s2 = (ax * air[0] + ay * air[1]) / size, math.hypot(air[0], air[1])
+    left_m_s2 = math.sqrt(leans_m_s2 * (2.0 * holds_m_s2 + leans_m_s2) + along_m_s2**2) - along_m_s2
+    most_m_s2 = max(min(most_m_s2, left_m_s2), math.hypot(bx, by) - jerk_max_m_s3 * DT_S)
+    back = min(1.0, most_m_s2 / size)
     model[2, 0], model[2, 1] = ax * back - expected[0], ay * back - expected[1]
     for i in range(2):
         model[0, i] += (model[1, i] + 0.5 * model[2, i] * DT_S) * DT_S
@@ -182,10 +186,10 @@ def _fly(path: Array, samples: Samples, sample: int, descent: Descent, out: Arra
             lean += GRAVITY_M_S2 * course.slope[k]
             _touch(off, lean, sink_m_s + samples.vertical[sample, 1], course.air_enu_m_s2, out)
             return
-        most_m_s2 = drone.level_m_s2 if height_m < drone.level_below_m else drone.acceleration_max_m_s2
+        leans_m_s2 = drone.level_m_s2 if height_m < drone.level_below_m else GRAVITY_M_S2
         before_m_s2[:] = model[2]
-        jerk = steer(model, state, off, known, drone)
-        plan(model, jerk, expected, drone.jerk_max_m_s3, most_m_s2)
+        bounds = (drone.jerk_max_m_s3, drone.acceleration_max_m_s2, leans_m_s2)
+        plan(model, steer(model, state, off, known, drone), expected, course.air_enu_m_s2, bounds)
         follow(state, before_m_s2, model[2], samples.pushes[sample, k], drone)
 
 

@@ -1,7 +1,8 @@
 """Levels a drone that leans into a curve or against a gust before it touches the pad; pure.
 
 In a curve the drone leans as the deck does not: 18 degrees on a circle of 20 m at 8 m/s. So in its last moments it
-turns less than the pad does, and takes the speed against it that it gains so.
+turns less than the pad does, and takes the speed against it that it gains so. What counts is the lean beyond that of
+steady flight: one that leans against a fast vehicle's wind comes upright as it brakes, and brakes with all that it can.
 """
 
 import math
@@ -35,13 +36,14 @@ def limits_now(memory: StepMemory, situation: Situation, inputs: StepInputs, con
     kept_m_s2, below_m = level_end(situation.pad, relative, inputs, config)
     if lowest_foot_m(situation, relative, config) > below_m + escape_m:
         return limits
-    return replace(limits, acceleration_max_m_s2=kept_m_s2)
+    leans_m_s2 = math.hypot(*memory.model.tracking.air_enu_m_s2.tolist()) + kept_m_s2
+    return replace(limits, tilt_acceleration_m_s2=min(leans_m_s2, limits.tilt_acceleration_m_s2))
 
 
 def level_end(
     pad: PadPath | None, relative: Approach, inputs: StepInputs, config: CompanionConfig
 ) -> tuple[float, float]:
-    """Return the acceleration that is left to a drone that levels, and the height of its lowest foot to begin at."""
+    """Return how much a drone that levels leans beyond steady flight, m/s^2, and the lowest foot's height to begin."""
     limits, touchdown = inputs.limits, config.touchdown
     turns_m_s2 = 0.0 if pad is None else math.hypot(*pad.acceleration_enu_m_s2[0, :2].tolist())
     kept_m_s2 = min(_kept_m_s2(turns_m_s2, limits.jerk_max_m_s3, config), limits.acceleration_max_m_s2)

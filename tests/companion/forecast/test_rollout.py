@@ -121,7 +121,7 @@ def test_a_drone_comes_back_over_the_pad_without_swinging_past_it_however_late_i
         places_m.append(off[0, 0])
         before = model[2].copy()
         jerk = rollout.steer(model, state, off, known, drone)
-        rollout.plan(model, jerk, still, drone.jerk_max_m_s3, drone.acceleration_max_m_s2)
+        rollout.plan(model, jerk, still, still, (drone.jerk_max_m_s3, drone.acceleration_max_m_s2, GRAVITY_M_S2))
         rollout.follow(state, before, model[2], still, drone)
     assert min(places_m) > -0.1 * 0.3  # the planner's own overshoot of a small step (planning/test_mpc.py)
     assert abs(places_m[-1]) < 0.03

@@ -27,11 +27,11 @@ LEVEL_M_S2 = CONFIG.touchdown.level.acceleration_min_m_s2
 DESCENDS = changed(StepMemory(), phase=Phase.DESCEND)
 
 
-def acceleration_max(height_m: float, lean: float, memory: StepMemory = DESCENDS) -> float:
+def leans_max(height_m: float, lean: float, memory: StepMemory = DESCENDS) -> float:
     here = situation(height_m)
     assert here.drone is not None
     leaning = replace(here, drone=replace(here.drone, lean=lean))
-    return limits_now(memory, leaning, INPUTS, CONFIG).acceleration_max_m_s2
+    return limits_now(memory, leaning, INPUTS, CONFIG).tilt_acceleration_m_s2
 
 
 @pytest.mark.parametrize(
@@ -41,7 +41,7 @@ def acceleration_max(height_m: float, lean: float, memory: StepMemory = DESCENDS
 def test_a_leaning_drone_is_levelled_as_much_higher_as_its_lowest_foot_hangs_down(
     height_m: float, lean: float, *, levels: bool
 ) -> None:
-    assert acceleration_max(height_m, lean) == (LEVEL_M_S2 if levels else LIMITS.acceleration_max_m_s2)
+    assert leans_max(height_m, lean) == (LEVEL_M_S2 if levels else LIMITS.tilt_acceleration_m_s2)
 
 
 @pytest.mark.parametrize(
@@ -73,7 +73,7 @@ def test_a_drone_that_turns_slower_is_levelled_earlier(jerk_m_s3: float, *, leve
     height_m, pad = CONFIG.touchdown.level.height_m + 0.1, _turning(2.5)
     facts = replace(situation(height_m, pad=pad), drone=drone_at(height_m, 0.0, (0.0, 0.0, -0.4), pad=pad))
     limits = replace(LIMITS, jerk_max_m_s3=jerk_m_s3)
-    assert (_levelled_m_s2(facts, limits) < LIMITS.acceleration_max_m_s2) is levels
+    assert (_levelled_m_s2(facts, limits) < LIMITS.tilt_acceleration_m_s2) is levels
 
 
 def _turning(turns_m_s2: float) -> PadPath:
@@ -83,7 +83,7 @@ def _turning(turns_m_s2: float) -> PadPath:
 
 
 def _levelled_m_s2(facts: Situation, limits: FlightLimits = LIMITS) -> float:
-    return limits_now(DESCENDS, facts, replace(INPUTS, limits=limits), CONFIG).acceleration_max_m_s2
+    return limits_now(DESCENDS, facts, replace(INPUTS, limits=limits), CONFIG).tilt_acceleration_m_s2
 
 
 def _sinking(height_m: float, sink_m_s: float) -> Situation:
@@ -97,8 +97,8 @@ def test_a_drone_is_levelled_earlier_by_what_its_setpoints_may_be_late(
 ) -> None:
     facts = _sinking(CONFIG.touchdown.level.height_m + 0.025, sink_m_s)  # 0.4 m/s for 0.08 s are 32 mm
     inputs = replace(INPUTS, link_delay=LinkDelay(std_s=late_s / CONFIG.touchdown.level.late_stds))
-    limit_m_s2 = limits_now(DESCENDS, facts, inputs, CONFIG).acceleration_max_m_s2
-    assert limit_m_s2 == (LEVEL_M_S2 if levels else LIMITS.acceleration_max_m_s2)
+    limit_m_s2 = limits_now(DESCENDS, facts, inputs, CONFIG).tilt_acceleration_m_s2
+    assert limit_m_s2 == (LEVEL_M_S2 if levels else LIMITS.tilt_acceleration_m_s2)
 
 
 @pytest.mark.parametrize(
@@ -110,7 +110,7 @@ def test_a_drone_whose_lean_lags_is_levelled_earlier_by_that(lag_s: float, *, is
         position_per_s=1.0, velocity_per_s=2.0, integral_per_s2=1.0, lead_s=0.0, attitude_lag_s=lag_s, is_led=is_led
     )
     inputs = replace(INPUTS, response=ResponseModel(cascade, np.array([0.0, 0.1])))
-    assert (limits_now(DESCENDS, facts, inputs, CONFIG).acceleration_max_m_s2 == LEVEL_M_S2) is levels
+    assert (limits_now(DESCENDS, facts, inputs, CONFIG).tilt_acceleration_m_s2 == LEVEL_M_S2) is levels
 
 
 @pytest.mark.parametrize(
@@ -128,18 +128,33 @@ def test_the_height_to_be_levelled_at_is_what_a_range_finder_has_just_seen_of_th
     estimated_m: float, seen_m: float | None, beside_m: float, *, levels: bool
 ) -> None:
     facts = changed(situation(estimated_m, beside_m), range_height_m=seen_m, range_carried_m=seen_m)
-    limit_m_s2 = limits_now(DESCENDS, facts, INPUTS, CONFIG).acceleration_max_m_s2
-    assert limit_m_s2 == (LEVEL_M_S2 if levels else LIMITS.acceleration_max_m_s2)
+    limit_m_s2 = limits_now(DESCENDS, facts, INPUTS, CONFIG).tilt_acceleration_m_s2
+    assert limit_m_s2 == (LEVEL_M_S2 if levels else LIMITS.tilt_acceleration_m_s2)
+
+
+@pytest.mark.parametrize(
+    ("needed_rad", "left_m_s2"),
+    [(math.pi, LIMITS.acceleration_max_m_s2), (0.0, 0.2 * 3.6), (0.5 * math.pi, math.sqrt(0.6**2 + 2.0 * 0.6 * 3.0))],
+    ids=["brakes", "goes faster", "turns"],
+)
+def test_a_drone_that_leans_against_the_wind_of_its_way_is_levelled_to_that_lean(
+    needed_rad: float, left_m_s2: float
+) -> None:
+    air = np.array([3.0, 0.0])
+    tracking = replace(DESCENDS.model.tracking, air_enu_m_s2=air)
+    flies = replace(DESCENDS, model=replace(DESCENDS.model, tracking=tracking))
+    limits = limits_now(flies, situation(0.05), INPUTS, CONFIG)
+    assert _left_m_s2(_turned(3.0, needed_rad), air, limits) == pytest.approx(left_m_s2)
 
 
 def test_nothing_but_a_descent_and_its_abort_is_levelled() -> None:
-    assert acceleration_max(0.05, 0.0, changed(DESCENDS, phase=Phase.ALIGN)) == LIMITS.acceleration_max_m_s2
+    assert leans_max(0.05, 0.0, changed(DESCENDS, phase=Phase.ALIGN)) == LIMITS.tilt_acceleration_m_s2
 
 
 @pytest.mark.parametrize(("height_m", "lean", "levels"), [(0.4, 0.0, True), (0.44, 0.0, False), (0.5, 0.5, True)])
 def test_a_drone_that_breaks_off_climbs_before_it_leans(height_m: float, lean: float, *, levels: bool) -> None:
-    limit_m_s2 = acceleration_max(height_m, lean, changed(DESCENDS, phase=Phase.ABORT))
-    assert limit_m_s2 == (LEVEL_M_S2 if levels else LIMITS.acceleration_max_m_s2)
+    limit_m_s2 = leans_max(height_m, lean, changed(DESCENDS, phase=Phase.ABORT))
+    assert limit_m_s2 == (LEVEL_M_S2 if levels else LIMITS.tilt_acceleration_m_s2)
 
 
 @pytest.mark.parametrize(
@@ -169,7 +184,11 @@ def _turned(length: float, angle_rad: float) -> Array:
     return np.array([length * math.cos(angle_rad), length * math.sin(angle_rad)])
 
 
-def _left_m_s2(needed: Array, air_enu_m_s2: Array, tilt_m_s2: float) -> float:
+def _tilts(tilt_m_s2: float) -> FlightLimits:
+    return replace(LIMITS, acceleration_max_m_s2=100.0, tilt_acceleration_m_s2=tilt_m_s2)
+
+
+def _left_m_s2(needed: Array, air_enu_m_s2: Array, limits: FlightLimits) -> float:
     """What is left of a drone's tilt that is wanted off where it is, by (2,)."""
     offset_s = np.arange(0.0, 1.0, 0.2)
     still = np.zeros((len(offset_s), 3))
@@ -183,7 +202,7 @@ def _left_m_s2(needed: Array, air_enu_m_s2: Array, tilt_m_s2: float) -> float:
             velocity_enu_m_s=still,
             acceleration_enu_m_s2=still,
         ),
-        limits=replace(LIMITS, acceleration_max_m_s2=100.0, tilt_acceleration_m_s2=tilt_m_s2),
+        limits=limits,
         floor_enu_m=still[:, 2],
         dt_s=0.02,
     )
@@ -195,13 +214,13 @@ def test_acceleration_and_what_holds_against_the_air_are_within_the_tilt_togethe
     tilt_m_s2: float, share: float, to_rad: float, air_rad: float
 ) -> None:
     air = _turned(share * tilt_m_s2, air_rad)
-    left_m_s2 = _left_m_s2(_turned(3.0, to_rad), air, tilt_m_s2)
+    left_m_s2 = _left_m_s2(_turned(3.0, to_rad), air, _tilts(tilt_m_s2))
     assert math.hypot(*(_turned(left_m_s2, to_rad) + air).tolist()) == pytest.approx(tilt_m_s2)
 
 
 @given(tilt_m_s2=thrusts, to_rad=sides)
 def test_in_still_air_all_of_the_tilt_is_left(tilt_m_s2: float, to_rad: float) -> None:
-    assert _left_m_s2(_turned(3.0, to_rad), np.zeros(2), tilt_m_s2) == pytest.approx(tilt_m_s2)
+    assert _left_m_s2(_turned(3.0, to_rad), np.zeros(2), _tilts(tilt_m_s2)) == pytest.approx(tilt_m_s2)
 
 
 @given(tilt_m_s2=thrusts, share=st.floats(0.01, 1.0), air_rad=sides, off_rad=st.floats(-1.4, 1.4))
@@ -210,9 +229,9 @@ def test_more_is_left_to_brake_than_to_go_faster(
 ) -> None:
     air = _turned(share * tilt_m_s2, air_rad)
     faster, slower = (_turned(3.0, air_rad + off_rad + turned_rad) for turned_rad in (0.0, math.pi))
-    assert _left_m_s2(slower, air, tilt_m_s2) > _left_m_s2(faster, air, tilt_m_s2) > 0.0
+    assert _left_m_s2(slower, air, _tilts(tilt_m_s2)) > _left_m_s2(faster, air, _tilts(tilt_m_s2)) > 0.0
 
 
 def test_tilt_raises_no_limit_and_one_that_is_not_known_lowers_none() -> None:
     for tilt_m_s2 in (101.0, math.inf):
-        assert _left_m_s2(np.array([2.0, 1.0]), np.array([-3.0, 4.0]), tilt_m_s2) == 100.0
+        assert _left_m_s2(np.array([2.0, 1.0]), np.array([-3.0, 4.0]), _tilts(tilt_m_s2)) == 100.0
