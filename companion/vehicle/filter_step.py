@@ -138,7 +138,8 @@ def step(
     t_ns = measurement.t_ns
     is_of_drone = measurement.quantity in OF_DRONE
     if snapshot.state is None or is_forgotten(config, snapshot, t_ns):
-        return snapshot if is_of_drone else _start(model, snapshot, measurement), None
+        waits: Snapshot[S] = Snapshot(t_ns=t_ns, told_ns=snapshot.told_ns, state=None, tally=snapshot.tally)
+        return waits if is_of_drone else _start(model, snapshot, measurement), None
     state, told_ns = snapshot.state, snapshot.told_ns if is_of_drone else t_ns
     if t_ns > snapshot.t_ns:
         state = model.predict(state, (t_ns - snapshot.t_ns) * 1e-9)

@@ -49,7 +49,7 @@ SWINGING = np.array([10, 11, *TILT])
 TURNS = frozenset({Quantity.HEADING, Quantity.YAW_RATE})
 MOTIONS = frozenset({Quantity.POSITION, Quantity.VELOCITY})
 HEIGHTS = frozenset({Quantity.PAD, Quantity.SURFACE})
-_OUTAGE_S = 1.0  # of what tells how the vehicle moves: longer than any receiver's period
+_OUTAGE_S = 1.0  # of what tells how the vehicle moves; a heading is lost by one of several seconds only
 TURN_AGE_MAX_S = 1.0  # of a sensor that is at work: several periods of the slowest
 
 

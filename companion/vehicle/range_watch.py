@@ -14,6 +14,7 @@ _AGREEING_M = 0.15  # of their median: a deck that heaves at 0.5 m/s has moved b
 _AGREEING_S = 0.6  # of a range finder at 10 Hz
 ATTITUDE_AGE_MAX_S = 0.15  # of a drone that turns at 0.5 rad/s: what is seen 5 m away is then 0.4 m off
 _UPRIGHT_MIN = 0.917  # 23 degrees; one that leans more turns too fast for the attitude to be that of the reading
+_CORRECTED_M = 0.3  # from one reading to the next no road climbs by as much: what was believed of the vehicle changed
 _LATELY_S = 10.0  # in which a drone comes from behind a vehicle to over it, and its own height wanders by half a metre
 
 
@@ -24,6 +25,7 @@ class RangeWatch(Struct, frozen=True, kw_only=True):
         newest_ns: when the newest was measured.
         same: the first of the newest ones that are all the same.
         recent: the last few surfaces, which have to agree: when each was seen, and its height in W.
+        vehicle_up_m: height of the vehicle in W at the newest that was believed, None before.
         lowest: surfaces lower than all after them, of the last seconds: when each was seen, and its height over the
             vehicle, so that a road that climbs does not rise.
     """
@@ -31,6 +33,7 @@ class RangeWatch(Struct, frozen=True, kw_only=True):
     newest_ns: int | None = None
     same: RangeReading | None = None
     recent: tuple[tuple[int, float], ...] = ()
+    vehicle_up_m: float | None = None
     lowest: tuple[tuple[int, float], ...] = ()
 
 
@@ -52,9 +55,11 @@ def watch_ranges(watch: RangeWatch, seen: RangeReading, vehicle_up_m: float | No
     if vehicle_up_m is None or _is_stuck(watch, seen) or _is_alone(watch.recent):
         return watch, None
     over_m, oldest_ns = here_m - vehicle_up_m, seen.t_ns - round(_LATELY_S * 1e9)
-    lower = tuple(one for one in watch.lowest if oldest_ns <= one[0] <= seen.t_ns and one[1] < over_m)
+    is_corrected = watch.vehicle_up_m is not None and abs(vehicle_up_m - watch.vehicle_up_m) > _CORRECTED_M
+    before = () if is_corrected else watch.lowest
+    lower = tuple(one for one in before if oldest_ns <= one[0] <= seen.t_ns and one[1] < over_m)
     lowest = (*lower, (seen.t_ns, over_m))
-    return replace(watch, lowest=lowest), over_m - lowest[0][1]
+    return replace(watch, vehicle_up_m=vehicle_up_m, lowest=lowest), over_m - lowest[0][1]
 
 
 def _is_stuck(watch: RangeWatch, seen: RangeReading) -> bool:

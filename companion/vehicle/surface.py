@@ -71,7 +71,7 @@ def pad_height_seen(
         slope_enu: by which the deck rises towards east and north, m per m.
         half_width_m: from the pad's centre to the nearest edge.
         above_road_m: the pad's height above the road or the water: what is nearer to these is not the pad, unless it
-            rises by more than half of that.
+            rises by more than half of that, and 0.6 m.
     """
     east_m, north_m, up_m = (surface.value[:3] - pad_enu_m).tolist()
     half_m, rises_m = 0.5 * above_road_m, float(surface.value[3])

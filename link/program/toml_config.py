@@ -78,13 +78,18 @@ def validate(
     above, between = overrides or {}, environment or {}
 
     def source_of(location: Location) -> str:
-        if not location and above:
+        if not location and _has_value(above):
             return f"{source} with the command line"
         if _is_in(location, above):
             return "command line"
         return "environment" if _is_in(location, between) else source
 
     return _check(model, merge(merge(table, between), above) if between or above else table, source_of)
+
+
+def _has_value(table: Mapping[str, Any]) -> bool:
+    """Return whether anything is laid over by a table: None leaves what is below."""
+    return any(_has_value(one) if isinstance(one, Mapping) else one is not None for one in table.values())
 
 
 def merge(below: Mapping[str, Any], above: Mapping[str, Any]) -> dict[str, Any]:

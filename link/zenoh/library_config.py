@@ -19,10 +19,8 @@ _BLOCK_MAX_US = 200_000
 stall the loop that flies. Less than the half second after which autopilots call a setpoint stream lost."""
 
 _TLS = "transport/link/tls/"
-_TLS_FILES = (
-    "root_ca_certificate",
-    *(f"{way}_{file}" for way in ("listen", "connect") for file in ("private_key", "certificate")),
-)
+_WAYS, _ENCRYPTED = ("listen", "connect"), ("tls/", "quic/", "wss/")
+_TLS_FILES = ("root_ca_certificate", *(f"{way}_{file}" for way in _WAYS for file in ("private_key", "certificate")))
 _JSON5_PLACE = re.compile(r"-->\s*(\d+):(\d+)")
 
 _MESSAGE_MAX_KEY = "transport/link/rx/max_message_size"
@@ -138,15 +136,16 @@ def _config_from_file(options: ZenohOptions) -> zenoh.Config:
 
 def _check_tls_files(config: zenoh.Config, config_file: Path | None) -> None:
     """Read the files of keys and certificates: of one that it cannot read, Zenoh says that nobody answers."""
+    ways = {way: any(one.startswith(_ENCRYPTED) for one in _endpoints(config, f"{way}/endpoints")) for way in _WAYS}
     for name in _TLS_FILES:
-        path = _get(config, _TLS + name)
-        if not isinstance(path, str):
+        path, way = _get(config, _TLS + name), name.partition("_")[0]
+        if not isinstance(path, str) or not path or not ways.get(way, any(ways.values())):
             continue
         try:
             Path(path).read_bytes()
-        except OSError as error:
+        except (OSError, ValueError) as error:
             raise UserError(
-                f"--zenoh-config {config_file}: {name}: {path} cannot be read ({error.strerror}); name the file that "
+                f"--zenoh-config {config_file}: {name}: {path} cannot be read ({error}); name the file that "
                 "there is, and let the user that runs the program read it"
             ) from error
 

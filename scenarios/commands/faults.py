@@ -57,23 +57,17 @@ def faults_command(
 
     if firmware is not None and firmware not in FIRMWARES:
         raise UserError(f"--firmware is one of {', '.join(FIRMWARES)}, not '{firmware}'")
-    cases = [
+    possible = [
         case
         for case in (*EXPECTED, *(EXPECTED_OVER_WIRE if wire else EXPECTED_IN_SORTIE))
-        if firmware in {None, case.firmware}
-        and (fault is None or fault in case.fault.value)
-        and phase in {None, case.phase.value}
-        and (not wire or case.fault in WIRE_FAULTS)
+        if firmware in {None, case.firmware} and (not wire or case.fault in WIRE_FAULTS)
     ]
+    named = [case for case in possible if fault is None or fault in case.fault.value]
+    cases = [case for case in named if phase in {None, case.phase.value}]
+    if not named:
+        raise UserError(f"no fault that is flown so has '{fault}' in its name; there are: {_listed(possible, 'fault')}")
     if not cases:
-        likewise = [case for case in (*EXPECTED, *EXPECTED_IN_SORTIE) if fault is None or fault in case.fault.value]
-        if not likewise:
-            faults = "; ".join(sorted({case.fault.value for case in EXPECTED}))
-            raise UserError(f"no fault has '{fault}' in its name; there are: {faults}")
-        if phase is None:
-            raise UserError(f"'{fault}' is not flown over the wire: leave --wire out")
-        phases = ", ".join(sorted({case.phase.value for case in likewise}))
-        raise UserError(f"it is not flown in the phase '{phase}'; give none, or one of {phases}")
+        raise UserError(f"none is flown so in the phase '{phase}'; there are: {_listed(named, 'phase')}")
     with closing(_fly(cases, workers, wire=wire)) as flown:
         rows = list(map(_row, flown) if as_json else _told(map(_row, flown)))
     if as_json:
@@ -81,6 +75,10 @@ def faults_command(
     else:
         sys.stdout.write(f"{sum(row['right'] for row in rows)} of {len(rows)} are right\n")
     return 0 if all(row["right"] for row in rows) else 1
+
+
+def _listed(cases: "Sequence[Case]", what: str) -> str:
+    return "; ".join(sorted({getattr(case, what).value for case in cases}))
 
 
 def _fly(cases: Sequence["Case"], workers: int | None, *, wire: bool) -> Generator["Ended", None, None]:

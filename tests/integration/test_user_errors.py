@@ -68,7 +68,7 @@ MISTAKES = [
     ("scenarios", "ros2 topics --domain 77", ["domain 77", "check --domain, and -e"]),
     ("scenarios", "faults --fault nosuch", ["'nosuch'", "pilot changes mode"]),
     ("scenarios", "faults --fault pilot --phase nosuch", ["'nosuch'", "align"]),
-    ("scenarios", "faults --wire --fault battery", ["'battery'", "leave --wire out"]),
+    ("scenarios", "faults --wire --fault battery", ["'battery'", "Zenoh router gone for 3 s"]),
     # configurations
     ("companion", "--config not.toml", ["not.toml", "line 1"]),
     ("companion", "--config key.toml", ["key.toml", "'descent.alignment.begin_distnce_m'", "'begin_distance_m'"]),

@@ -152,6 +152,7 @@ def test_what_only_the_drone_tells_keeps_no_silent_vehicle_in_mind() -> None:
     memory = estimator.fuse(None, [before])
     for one in ranges:
         memory = estimator.fuse(memory, [one])
+        assert memory is None or len(memory.entries) <= 2.0 * CONFIG.keep_s + 2
     assert estimator.forecast(memory, now.t_ns, np.array([0.0, 0.2])) is None
     memory = estimator.fuse(memory, [now])
     assert memory is not None

@@ -83,6 +83,13 @@ def test_road_that_climbs_does_not_rise() -> None:
     assert _watch(road) == pytest.approx(climbs_m * 200)  # of a vehicle that stays below
 
 
+def test_road_does_not_rise_as_the_vehicles_height_is_corrected() -> None:
+    watch, rises_m = RangeWatch(), None
+    for i in range(60):
+        watch, rises_m = watch_ranges(watch, _reading(i, 0.02 * (i % 2)), 0.8 if i < 30 else 0.0)
+    assert rises_m == pytest.approx(0.02)
+
+
 def test_surface_seen_while_the_vehicle_is_not_placed_is_not_believed() -> None:
     watch = RangeWatch()
     for i in range(6):

@@ -341,9 +341,19 @@ def test_a_wrong_configuration_file_is_the_users_mistake(tmp_path: Path, text: s
 @pytest.mark.parametrize("name", ["root_ca_certificate", "connect_private_key", "listen_certificate"])
 def test_a_key_or_certificate_that_cannot_be_read_is_told_by_its_name(tmp_path: Path, name: str) -> None:
     path = tmp_path / "zenoh.json5"
-    path.write_text(f"{{ transport: {{ link: {{ tls: {{ {name}: '{tmp_path}/none.pem' }} }} }} }}", encoding="utf-8")
-    with pytest.raises(UserError, match=rf"{name}: {tmp_path}/none\.pem cannot be read \(No such file"):
+    ends = "listen: { endpoints: ['tls/127.0.0.1:0'] }, connect: { endpoints: ['tls/127.0.0.1:1'] }"
+    keys = f"transport: {{ link: {{ tls: {{ {name}: '{tmp_path}/none.pem' }} }} }}"
+    path.write_text(f"{{ {ends}, {keys} }}", encoding="utf-8")
+    with pytest.raises(UserError, match=rf"{name}: {tmp_path}/none\.pem cannot be read"):
         open_session(ZenohOptions(config_file=path))
+
+
+def test_keys_that_no_endpoint_needs_are_not_read(tmp_path: Path, endpoint: str) -> None:
+    path = tmp_path / "zenoh.json5"
+    keys = f"transport: {{ link: {{ tls: {{ listen_private_key: '{tmp_path}/none.pem' }} }} }}"
+    path.write_text(f"{{ listen: {{ endpoints: ['{endpoint}'] }}, {keys} }}", encoding="utf-8")
+    with open_session(ZenohOptions(config_file=path)) as session:
+        assert peer_count(session) == 0
 
 
 def test_a_missing_configuration_file_is_the_users_mistake(tmp_path: Path) -> None:
