@@ -97,5 +97,5 @@ def test_layout_shows_topics_and_fields_that_a_recording_has() -> None:
 
 def test_missing_library_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("importlib.util.find_spec", lambda _: None)
-    with pytest.raises(UserError, match=r"decklander\[foxglove\]"):
+    with pytest.raises(UserError, match=r"the extra 'foxglove'"):
         layout_json(KEYS)
