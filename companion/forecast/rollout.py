@@ -5,9 +5,9 @@ datum, off the forecast by what the estimate may err, keeps its acceleration unt
 depart or turn in. What is known of it is `delay` older, but for the error of the estimate, which stays; a change of its
 acceleration is believed with the filter's lag, and what is known is carried on to the present with it.
 The virtual model follows what is known as the planner does near its target: within jerk and acceleration, on the way of
-least jerk that ends there at rest after the planner's shortest time T, which is laid anew all the time,
+least jerk that ends there at rest after the planner's shortest time W, which is laid anew all the time,
 
-    j = 60 / T^3 (p - e) + 36 / T^2 (v - e') + 9 / T (a - s'')
+    j = 60 / W^3 (p - e) + 36 / W^2 (v - e') + 9 / W (a - s'')
 
 and the drone follows the model by its autopilot's cascade (`autopilots.response`), whose deviation gusts move. The
 planner foresees that deviation, so e' is the velocity once the drone leans as the model accelerates. It leans
@@ -80,8 +80,8 @@ def _breaks_off(off: Array, height_m: float, sink_m_s: float, rules: Rules) -> b
 
 
 @compiled_kernel
-def steer(model: Array, state: Array, off: Array, known: Array, drone: Follower) -> Array:
-    """Return the jerk (2,) by which the drone comes over what is known of the pad.
+def steer(model: Array, state: Array, off: Array, known: Array, drone: Follower) -> tuple[float, float]:
+    """Return the jerk, east and north, by which the drone comes over what is known of the pad.
 
     Args:
         model: (3, 2) the virtual model, off the pad's forecast.
@@ -90,14 +90,20 @@ def steer(model: Array, state: Array, off: Array, known: Array, drone: Follower)
         known: (3, 2) of the pad, off its forecast.
         drone: with how long a way takes.
     """
-    to_come = (1.0 - drone.led_share) / drone.turns_hz * (state[2] - model[2])
-    rate, acceleration = off[1] + to_come, model[2] - known[2]
-    return np.asarray(-((60.0 * off[0] / drone.way_s + 36.0 * rate) / drone.way_s + 9.0 * acceleration) / drone.way_s)
+    # Axis by axis in plain numbers: in a hundred steps of each sample arrays take twice as long.
+    lag_s = (1.0 - drone.led_share) / drone.turns_hz
+    rate_x, rate_y = off[1, 0] + lag_s * (state[2, 0] - model[2, 0]), off[1, 1] + lag_s * (state[2, 1] - model[2, 1])
+    place, rate, acceleration = 60.0 / drone.way_s**3, 36.0 / drone.way_s**2, 9.0 / drone.way_s
+    jx = -place * off[0, 0] - rate * rate_x - acceleration * (model[2, 0] - known[2, 0])
+    jy = -place * off[0, 1] - rate * rate_y - acceleration * (model[2, 1] - known[2, 1])
+    return jx, jy
 
 
 @compiled_kernel
-def plan(model: Array, jerk: Array, expected: Array, air: Array, bounds: tuple[float, float, float]) -> None:
-    """Move the virtual model (3, 2) by one step with a jerk (2,), within bounds.
+def plan(
+    model: Array, jerk: tuple[float, float], expected: Array, air: Array, bounds: tuple[float, float, float]
+) -> None:
+    """Move the virtual model (3, 2) by one step with a jerk, within bounds.
 
     Args:
         model: off the pad's forecast.

@@ -5,7 +5,7 @@ import math
 import numpy as np
 from msgspec import Struct
 
-from companion.autopilots.response import ATTITUDE_LAG_S, DRAG_PER_S, STATES
+from companion.autopilots.response import ATTITUDE_LAG_S, DRAG_PER_S, STATES, Cascade
 from companion.config.companion import CompanionConfig
 from companion.core.data import Array
 from companion.forecast.draws import STEPS_MAX
@@ -29,7 +29,7 @@ _SLOW_M_S = 0.3  # slower than this a vehicle has no direction but its heading
 _SLOPE_FROM_M_S = 1.0  # from here on a vertical speed tells the grade
 # Lag with which an acceleration is believed: velocities at 10 Hz show a brake in 0.3 s, an accelerometer at once.
 _BELIEVES_S, _BELIEVES_BY_SENSOR_S = 0.3, 0.1
-_WAY_LAGS = 7.0  # of a drone that leans so late that it would swing on a shorter way; the planner foresees that it does
+_WAY_LAGS = 7.0
 _SENSOR_HOLD_NS = 1_000_000_000
 
 
@@ -121,6 +121,14 @@ def _shake_at(offset_s: Array, pad: PadPath) -> Array:
     return np.stack([_at(offset_s, pad, values) for values in pad.swing.shake_enu[:2]])
 
 
+def way_time_s(cascade: Cascade, shortest_s: float) -> float:
+    """Return how long the way of a rollout's planner takes, which foresees less of a late lean than the planner does.
+
+    On a way of fewer than some seven of its lags the drone would swing, which behind the planner it does not.
+    """
+    return max(shortest_s, _WAY_LAGS * cascade.lean_lag_s)
+
+
 def follower_of(memory: StepMemory, situation: Situation, inputs: StepInputs, config: CompanionConfig) -> Follower:
     """Return how the drone follows, by its autopilot's gains, the planner's shortest way and the limits."""
     if inputs.response is None or situation.approach is None:
@@ -138,7 +146,7 @@ def follower_of(memory: StepMemory, situation: Situation, inputs: StepInputs, co
         forgets_hz=cascade.forgets_hz,
         drag_per_s=DRAG_PER_S,
         push_std_m_s2=memory.forecast.gusts.push_std_m_s2,
-        way_s=max(config.guidance.mpc.intercept_time_min_s, _WAY_LAGS * cascade.lean_lag_s),
+        way_s=way_time_s(cascade, config.guidance.mpc.intercept_time_min_s),
         believes_s=_BELIEVES_BY_SENSOR_S if is_told else _BELIEVES_S,
         acceleration_max_m_s2=limits.acceleration_max_m_s2,
         jerk_max_m_s3=limits.jerk_max_m_s3,

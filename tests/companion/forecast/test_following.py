@@ -10,6 +10,7 @@ from companion.forecast import rollout
 from companion.forecast.samples import DT_S, Follower
 from companion.landing.steering.targets import HORIZON_OFFSETS_S
 from companion.landing.steering.virtual_model import response_to
+from companion.landing.touchdown.rollout_inputs import way_time_s
 from companion.planning.guidance import PlanRequest, ReferenceState, Target
 from companion.planning.mpc import Mpc
 from link.records import replace
@@ -77,11 +78,11 @@ def flown(model: Array, deviation: Array, response: ResponseModel, limits: Fligh
     return np.array(found)
 
 
-def rolled_out(model: Array, deviation: Array, drone: Follower) -> Array:
+def rolled_out(model: Array, deviation: Array, drone: Follower, lasts_s: float = LASTS_S) -> Array:
     """Return the same by the rollouts' own steps."""
     path, state = np.column_stack((model, np.zeros(3))), np.column_stack((deviation, np.zeros(STATES)))
     known, still, found = np.zeros((3, 2)), np.zeros(2), []
-    for _ in range(round(LASTS_S / DT_S)):
+    for _ in range(round(lasts_s / DT_S)):
         off, before = path[:2] + state[:2], path[2].copy()
         found.append(off[:, 0])
         jerk = rollout.steer(path, state, off, known, drone)
@@ -90,19 +91,23 @@ def rolled_out(model: Array, deviation: Array, drone: Follower) -> Array:
     return np.array(found)
 
 
-@pytest.mark.parametrize(("cascade", "jerk_max_m_s3"), [(ARDUPILOT, 8.0), (PX4, 20.0)], ids=["ardupilot", "px4"])
-def test_rollouts_come_over_the_pad_as_the_planner_does(cascade: Cascade, jerk_max_m_s3: float) -> None:
-    limits = replace(LIMITS, jerk_max_m_s3=jerk_max_m_s3, acceleration_max_m_s2=DRONE.acceleration_max_m_s2)
-    drone = DRONE._replace(
+def follower(cascade: Cascade, jerk_max_m_s3: float) -> Follower:
+    return DRONE._replace(
         stiffness_per_s2=cascade.stiffness_per_s2,
         damping_per_s=cascade.damping_per_s,
         path_share=1.0 if cascade.is_led else cascade.path_share,
         led_share=float(cascade.is_led),
         turns_hz=cascade.turns_hz,
         forgets_hz=cascade.forgets_hz,
+        way_s=way_time_s(cascade, DRONE.way_s),
         jerk_max_m_s3=jerk_max_m_s3,
     )
-    errors = []
+
+
+@pytest.mark.parametrize(("cascade", "jerk_max_m_s3"), [(ARDUPILOT, 8.0), (PX4, 20.0)], ids=["ardupilot", "px4"])
+def test_rollouts_come_over_the_pad_as_the_planner_does(cascade: Cascade, jerk_max_m_s3: float) -> None:
+    limits = replace(LIMITS, jerk_max_m_s3=jerk_max_m_s3, acceleration_max_m_s2=DRONE.acceleration_max_m_s2)
+    drone, errors = follower(cascade, jerk_max_m_s3), []
     for model, deviation in starts(12):
         true = flown(model, deviation, response_to(cascade), limits)
         told = rolled_out(model, deviation, drone)
@@ -112,3 +117,20 @@ def test_rollouts_come_over_the_pad_as_the_planner_does(cascade: Cascade, jerk_m
     place_m, rate_m_s = np.sqrt(np.mean(np.concatenate(errors) ** 2, axis=0))
     assert place_m < 0.05  # of 0.14 m that they move by, root mean square
     assert rate_m_s < 0.1  # what a report's velocity errs by (`response.VELOCITY_STD_M_S`)
+
+
+@pytest.mark.parametrize("attitude_lag_s", [0.2, 0.45, 0.6])
+def test_a_drone_that_leans_late_does_not_swing_ever_wider(attitude_lag_s: float) -> None:
+    drone = follower(replace(ARDUPILOT, attitude_lag_s=attitude_lag_s), 8.0)
+    for model, deviation in starts(12):
+        rates_m_s = np.abs(rolled_out(model, deviation, drone, lasts_s=9.0)[:, 1])
+        third = len(rates_m_s) // 3
+        assert rates_m_s[-third:].max() < rates_m_s[:third].max()
+
+
+@pytest.mark.parametrize(("cascade", "jerk_max_m_s3"), [(ARDUPILOT, 8.0), (PX4, 20.0)], ids=["ardupilot", "px4"])
+def test_a_drone_beside_the_pad_comes_over_it_without_swinging_past_it(cascade: Cascade, jerk_max_m_s3: float) -> None:
+    beside = np.array([0.3, 0.0, 0.0])
+    places_m = rolled_out(beside, np.zeros(STATES), follower(cascade, jerk_max_m_s3), lasts_s=3.0)[:, 0]
+    assert places_m.min() > -0.1 * beside[0]  # the planner's own overshoot of a small step (planning/test_mpc.py)
+    assert abs(places_m[-1]) < 0.03

@@ -9,7 +9,7 @@ from companion.core.data import GRAVITY_M_S2
 from companion.forecast import rollout
 from companion.forecast.rollout import roll_out
 from companion.forecast.samples import ALONG, CONTACT, DT_S, ERROR, IN_S, SINK, SPEED, TILT
-from tests.companion.forecast.descents import DRONE, HEIGHT_M, NEVER_S, RULES, SINK_M_S, descent, samples
+from tests.companion.forecast.descents import HEIGHT_M, NEVER_S, RULES, SINK_M_S, descent, samples
 
 
 def test_a_contact_over_a_vehicle_that_does_what_is_expected_is_the_planned_one() -> None:
@@ -109,19 +109,3 @@ def test_machine_code_is_its_python(monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setattr(rollout, name, getattr(rollout, name).py_func)
     plain = roll_out.py_func(several, descent(push_std_m_s2=0.5), 0.17)
     assert compiled == pytest.approx(plain, abs=1e-12)
-
-
-@pytest.mark.parametrize("led_share", [0.0, 1.0])
-def test_a_drone_comes_back_over_the_pad_without_swinging_past_it_however_late_it_leans(led_share: float) -> None:
-    drone = DRONE._replace(turns_hz=7.5, led_share=led_share, jerk_max_m_s3=8.0)
-    model, state, known, still = np.zeros((3, 2)), np.zeros((4, 2)), np.zeros((3, 2)), np.zeros(2)
-    model[0, 0], places_m = 0.3, []
-    for _ in range(int(3.0 / DT_S)):
-        off = model[:2] + state[:2]
-        places_m.append(off[0, 0])
-        before = model[2].copy()
-        jerk = rollout.steer(model, state, off, known, drone)
-        rollout.plan(model, jerk, still, still, (drone.jerk_max_m_s3, drone.acceleration_max_m_s2, GRAVITY_M_S2))
-        rollout.follow(state, before, model[2], still, drone)
-    assert min(places_m) > -0.1 * 0.3  # the planner's own overshoot of a small step (planning/test_mpc.py)
-    assert abs(places_m[-1]) < 0.03
