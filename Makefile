@@ -17,7 +17,7 @@ unexport PYTHONDONTWRITEBYTECODE
 WIRE = $(shell grep -rlF pytest.mark.wire tests --include='test_*.py' | sort)
 # They take longest, so they begin first.
 LONG = $(addprefix tests/,conformance/test_mavsdk.py security/test_secured_landing.py integration/test_view.py \
-    scenarios/bench/test_bench.py integration/test_lost_partners.py)
+    scenarios/bench/test_bench.py integration/test_stations.py integration/test_lost_partners.py)
 ALONE = $(shell grep -rlF pytest.mark.alone tests --include='test_*.py' | sort)
 
 .PHONY: setup demo test check fast simulated docs lint style types lock fuzz clean

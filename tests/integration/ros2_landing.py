@@ -20,7 +20,6 @@ from tests.integration.observer import Observer
 from tests.integration.programs import Programs
 from tests.integration.ros_vehicle import DOMAIN
 
-SPEED = "3"
 MAP = """
 [vehicle]
 odometry = "/localization/kinematic_state"
@@ -52,7 +51,7 @@ def land(folder: Path, seed: int, look: Callable[[Programs, tuple[str, ...]], No
             bystander = Observer(zenoh, Keys())
             listening = ("--mavlink", f"udpin:127.0.0.1:{port}", "--start", "--use-sim-time")
             programs.start("companion", *listening, *ros2, *client)
-            speaking = ("--mavlink", f"udpout:127.0.0.1:{port}", "--speed", SPEED, "--seed", str(seed))
+            speaking = ("--mavlink", f"udpout:127.0.0.1:{port}", "--seed", str(seed))
             programs.start("scenarios", "world", "straight_5+wind=nominal", *speaking, *client)
             bystander.wait_for_relative_position()
             look(programs, client)

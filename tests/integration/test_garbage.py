@@ -57,7 +57,7 @@ class Thrower:
 
 def test_garbage_on_the_port_and_on_every_key_is_counted_and_the_landing_succeeds(tmp_path: Path) -> None:
     with Programs() as programs:
-        run = programs.start("scenarios", "run", "straight_5", "--speed", "2", "--json", "--out", str(tmp_path))
+        run = programs.start("scenarios", "run", "straight_5", "--json", "--out", str(tmp_path))
         endpoint = option_of(run, "companion", "-e")
         device = option_of(run, "companion", "--mavlink")
         with (

@@ -9,14 +9,12 @@ from tests.integration.programs import Programs
 
 pytestmark = pytest.mark.wire
 
-SPEED = "3"
-
 
 def test_four_programs_land_on_command_with_the_companion_started_last() -> None:
     port, endpoint = free_udp_port(), free_tcp_endpoint()
     with Programs() as programs, observer(endpoint) as bystander:
         programs.start("ground-vehicle", "--scenario", "straight_5", "--use-sim-time", "-l", endpoint)
-        programs.start("sim-autopilot", "--mavlink", f"udpout:127.0.0.1:{port}", "-e", endpoint, "--speed", SPEED)
+        programs.start("sim-autopilot", "--mavlink", f"udpout:127.0.0.1:{port}", "-e", endpoint)
         bystander.wait_for_time(1.0)
         programs.start("companion", "--mavlink", f"udpin:127.0.0.1:{port}", "-e", endpoint, "--use-sim-time")
         bystander.wait_for_relative_position()

@@ -14,7 +14,6 @@ pytestmark = pytest.mark.wire
 # What a drone may still sink after the abort: while attitude (1 / MC_ROLL_P) and rotors lag it sinks ever faster,
 # as it does then; afterwards it brakes with at least half of MPC_ACC_UP_MAX.
 BRAKING_M_S2, REACTION_S, OWN_POSITION_M = 2.0, 0.3, 0.1
-SPEED = "2"
 
 
 def sink_m_s(truth: BodyTruth) -> float:
@@ -60,7 +59,7 @@ def test_the_drone_climbs_away_when_the_vehicle_is_killed_in_the_chase() -> None
     port, endpoint = free_udp_port(), free_tcp_endpoint()
     with Programs() as programs, observer(endpoint) as bystander:
         vehicle = programs.start("ground-vehicle", "--scenario", "straight_5", "--use-sim-time", "-l", endpoint)
-        device = ("--mavlink", f"udpout:127.0.0.1:{port}", "--speed", SPEED)
+        device = ("--mavlink", f"udpout:127.0.0.1:{port}")
         programs.start("sim-autopilot", *device, "-e", endpoint)
         programs.start("companion", "--mavlink", f"udpin:127.0.0.1:{port}", "-e", endpoint, "--use-sim-time", "--start")
         bystander.wait_for_phase(Phase.CHASE, Phase.ALIGN)

@@ -36,6 +36,7 @@ def read(folder: Path, name: str) -> dict[str, Any]:
     return table
 
 
+@pytest.mark.alone  # two drones, each with its companion, are all that two cores can carry
 def test_two_runs_at_once_leave_their_folders_of_a_landing_and_of_what_came_until_the_time_limit(
     tmp_path: Path,
 ) -> None:
@@ -43,7 +44,7 @@ def test_two_runs_at_once_leave_their_folders_of_a_landing_and_of_what_came_unti
     short.write_text('base = "straight_5"\n[run]\ntime_limit_s = 9.0\n', encoding="utf-8")
     with Programs() as programs:
         runs = [
-            start_run(programs, tmp_path, "--speed", "3", "--seed", str(seed), "--json", scenario=scenario)
+            start_run(programs, tmp_path, "--seed", str(seed), "--json", scenario=scenario)
             for seed, scenario in ((1, "straight_5"), (2, str(short)))
         ]
         codes = [run.wait() for run in runs]
@@ -57,7 +58,7 @@ def test_two_runs_at_once_leave_their_folders_of_a_landing_and_of_what_came_unti
         result, timing = read(folder, "result.json"), read(folder, "timing.json")
         assert result.items() <= table.items()
         assert timing == table["timing"]
-        assert 0.0 < timing["real_time_factor"] < 3.2
+        assert 0.0 < timing["real_time_factor"] < 1.05
         step_ms = timing["step_ms"]["companion"]
         assert 0.0 < step_ms["median"] <= step_ms["p99"] <= step_ms["max"]
         assert {path.name for path in folder.iterdir()} == {

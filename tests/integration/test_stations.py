@@ -16,15 +16,13 @@ from tests.integration.programs import Programs
 
 pytestmark = pytest.mark.wire
 
-SPEED = "3"
-
 
 @contextmanager
 def landing(firmware: str, *options: str) -> Iterator[tuple[Programs, Observer, int]]:
     """A drone and a vehicle with a companion that waits for a start, and the port of the autopilot's other link."""
     port, station_port, endpoint = free_udp_port(), free_udp_port(), free_tcp_endpoint()
     links = ("--mavlink", f"udpout:127.0.0.1:{port}", "--mavlink", f"udpout:127.0.0.1:{station_port}")
-    flags = ("--firmware", firmware, "--instant", "--speed", SPEED)
+    flags = ("--firmware", firmware, "--instant")
     with Programs() as programs, observer(endpoint) as bystander:
         programs.start("ground-vehicle", "--scenario", "straight_5", "--use-sim-time", "-l", endpoint)
         device = f"udpin:127.0.0.1:{port}"
