@@ -26,7 +26,7 @@ _CORRECTED_PER_S = (
     2.0  # jerk by acceleration, as by default; corrected faster, the jitter of setpoints takes all the jerk
 )
 _NO_STABILISATION = 0b110000  # bits 4 and 5: positions, velocities are not held
-_GUIDED_LOSS_S = (0.5, 1.5)
+_GUIDED_LOSS_S, _GUIDED_LOSS_ADVISED_S = (0.5, 1.5), 1.0
 _DISARM_DELAY_MIN_S = 5.0
 _EKF_ACTIONS = (1, 3)
 _LEVEL_BELOW_M = 1.0  # so high above the deck its own take-off is level; setpoints take over before
@@ -86,6 +86,7 @@ ARDUPILOT_RULES = (
     setpoint_loss_rule(
         (Spelling("GUID_TIMEOUT"),),
         _GUIDED_LOSS_S,
+        _GUIDED_LOSS_ADVISED_S,
         Level.WARN,
         "so long it coasts on when setpoints stay away: 21 m from 5 m/s with 3 s",
     ),

@@ -16,7 +16,7 @@ from companion.check.rules import (
 )
 
 _SPEED = (Spelling("MPC_XY_VEL_MAX"),)
-_LOSS_S = (0.5, 3.0)
+_LOSS_S, _LOSS_ADVISED_S = (0.5, 3.0), 3.0
 _ACT_HOLD, _ACT_LAST_SAFE = 5, 5
 _OVERRIDE_IN_OFFBOARD = 2
 _LIFT_OFF_S = 5.0  # from arming: half a second of a quiet deck, a second to spool up, the ramp of MPC_TKO_RAMP_T
@@ -37,8 +37,10 @@ PX4_RULES = (
     setpoint_loss_rule(
         (Spelling("COM_OF_LOSS_T"),),
         _LOSS_S,
+        _LOSS_ADVISED_S,
         Level.FAIL,
-        "how long setpoints may stay away: shorter, a hiccup ends the flight; longer, a dead companion flies on",
+        "how long it stands at the last setpoint without a new one: shorter, a hiccup ends the flight; longer, "
+        "nobody flies the drone",
     ),
     equals(
         float(_ACT_HOLD),

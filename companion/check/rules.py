@@ -108,15 +108,15 @@ def equals(
 
 
 def setpoint_loss_rule(
-    spellings: tuple[Spelling, ...], range_s: tuple[float, float], level: Level, reason: str
+    spellings: tuple[Spelling, ...], range_s: tuple[float, float], advised_s: float, level: Level, reason: str
 ) -> ParameterRule:
-    """Return the rule of the parameter that says how long setpoints may stay away, of which 1 s is advised."""
+    """Return the rule of the parameter that says how long setpoints may stay away."""
     return ParameterRule(
         spellings=spellings,
         unit="s",
         level=level,
         test=lambda value, _: range_s[0] <= value <= range_s[1],
-        advised=lambda _: 1.0,
+        advised=lambda _: advised_s,
         reason=reason,
     )
 
