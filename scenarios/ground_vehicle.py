@@ -135,7 +135,7 @@ def ground_vehicle(
 
 def _zenoh_opener(keys: "Keys", endpoints: ZenohArguments, ros2: Ros2Arguments) -> "OpenZenoh":
     """Return what opens the session that the options describe."""
-    from link.ros2.options import open_layout
+    from link.ros2.layout import open_layout
 
     layout = ros2.options()
     # a ROS 2 graph has its router at the default endpoint; else the vehicle waits there for the others

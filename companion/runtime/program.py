@@ -12,7 +12,8 @@ from companion.runtime.command_line import MavlinkArguments, RecordArguments, Ru
 from link.mavlink.signing import Signing
 from link.program.cli import Patience
 from link.recording.recorder import BackgroundRecorder
-from link.ros2.options import Ros2Options, open_layout
+from link.ros2.layout import open_layout
+from link.ros2.options import Ros2Options
 from link.transports.opening import open_transport
 from link.zenoh.keys import Keys
 from link.zenoh.options import ZenohOptions

@@ -2,14 +2,12 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from link.program.option_groups import OptionGroup
-
-if TYPE_CHECKING:
-    from link.ros2.options import Ros2Options
+from link.ros2.options import Ros2Options, ros2_options
 
 _PANEL = "ROS 2"
 
@@ -36,12 +34,10 @@ class Ros2Arguments(OptionGroup):
     ros2: _Ros2Option = None
     ros2_map: _Ros2MapOption = None
 
-    def options(self) -> "Ros2Options | None":
+    def options(self) -> Ros2Options | None:
         """Return what they say, None without `--ros2`.
 
         Raises:
             UserError: there is no such domain, or a map without `--ros2`.
         """
-        from link.ros2.options import ros2_options  # noqa: PLC0415 (it loads Zenoh)
-
         return ros2_options(self.ros2, self.ros2_map)

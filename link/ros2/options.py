@@ -1,12 +1,9 @@
-"""What a user may say about ROS 2, and the session in one layout or the other."""
+"""What a user may say about ROS 2."""
 
 from dataclasses import dataclass
 from pathlib import Path
 
 from link.errors import UserError
-from link.zenoh.keys import Keys
-from link.zenoh.options import ZenohOptions
-from link.zenoh.session import ZenohSession, open_session
 
 DOMAIN_MAX = 232
 """The largest ROS_DOMAIN_ID for which DDS has ports (docs.ros.org, "The ROS_DOMAIN_ID")."""
@@ -44,16 +41,3 @@ def ros2_options(domain: int | None, map_file: Path | None) -> Ros2Options | Non
     if map_file is not None:
         raise UserError(f"--ros2-map {map_file} is read with --ros2 only: add --ros2 [DOMAIN]")
     return None
-
-
-def open_layout(options: ZenohOptions, ros2: Ros2Options | None, keys: Keys, node: tuple[str, str]) -> ZenohSession:
-    """Return an open session in our own layout, or with `ros2` as the node of that namespace and name.
-
-    Raises:
-        UserError: A file, a name or an endpoint is wrong (see `open_session`).
-    """
-    if ros2 is None:
-        return open_session(options)
-    from link.ros2.session import open_ros2_session  # noqa: PLC0415 (it loads the types of ROS)
-
-    return open_ros2_session(options, ros2, keys, node)

@@ -13,7 +13,8 @@ from link.errors import UserError
 from link.messages import CommandReply, Fix, PadGeometry
 from link.payloads import cdr, json_messages
 from link.ros2.attachment import publisher_id
-from link.ros2.options import Ros2Options, open_layout, ros2_options
+from link.ros2.layout import open_layout
+from link.ros2.options import Ros2Options, ros2_options
 from link.ros2.ros_node import read_graph
 from link.ros2.session import Ros2Session, open_ros2_session
 from link.zenoh.keys import Keys
