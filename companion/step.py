@@ -8,7 +8,8 @@ from companion.config.companion import CompanionConfig
 from companion.integrity.heights import is_road_elsewhere, update_ground
 from companion.integrity.vehicle_data import update_course
 from companion.landing.decisions.conditions import HELD_UP, holds
-from companion.landing.decisions.contact import may_force_motors_off, signs_of
+from companion.landing.decisions.contact import may_force_motors_off
+from companion.landing.decisions.contact_signs import signs_of
 from companion.landing.flying import fly
 from companion.landing.outputs import landing_status, news, news_of_sortie, setpoint
 from companion.landing.sortie.events import is_quiet_for_long

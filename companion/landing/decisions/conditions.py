@@ -9,12 +9,11 @@ from companion.landing.decisions.contact import (
     Verdict,
     does_not_fall,
     is_stopped_by_pad,
-    signs_of,
-    signs_text,
     trial_press_m_s2,
     trial_s,
     verdict,
 )
+from companion.landing.decisions.contact_signs import signs_of, signs_text
 from companion.landing.state.memory import Held
 from companion.situation.phases import LANDING_PHASES, Phase
 from companion.situation.situation import Situation

@@ -218,6 +218,34 @@ def test_a_mistake_in_an_override_is_the_command_lines(tmp_path: Path) -> None:
         load_config(written(tmp_path, "guidance.horizon_s = 99"), Config, {"guidance": {"kind": "pn"}})
 
 
+class Span(StrictModel):
+    first: int = 1
+    last: int = 2
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if self.last < self.first:
+            raise ValueError("last must be at least first")
+        return self
+
+
+@pytest.mark.parametrize(
+    ("environment", "overrides", "source"),
+    [
+        ({}, {}, "a file"),
+        ({"first": 5}, {"last": None}, "a file with the environment"),
+        ({}, {"first": 5}, "a file with the command line"),
+        ({"first": 5}, {"last": 3}, "a file with the environment and the command line"),
+    ],
+)
+def test_values_that_do_not_fit_together_name_all_that_was_laid_over_the_file(
+    environment: dict[str, int], overrides: dict[str, int | None], source: str
+) -> None:
+    with pytest.raises(UserError) as told:
+        validate(Span, {"first": 4}, source="a file", environment=environment, overrides=overrides)
+    assert str(told.value) == f"{source}: it does not fit: last must be at least first"
+
+
 def test_files_that_cannot_be_read_are_named(tmp_path: Path) -> None:
     with pytest.raises(UserError, match=r"absent.toml: cannot be read \(No such file"):
         load_config(tmp_path / "absent.toml", Config)

@@ -7,13 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from companion.landing.decisions.contact import (
-    Verdict,
-    may_force_motors_off,
-    signs_of,
-    signs_text,
-    verdict,
-)
+from companion.landing.decisions.contact import Verdict, may_force_motors_off, verdict
+from companion.landing.decisions.contact_signs import signs_of, signs_text
 from companion.situation.situation import Situation
 from companion.vehicle.pad_reach import over_pad_radius_m
 from link.messages import Vector3

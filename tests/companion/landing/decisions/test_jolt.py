@@ -7,7 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from companion.landing.decisions.contact import Signs, does_not_fall, is_stopped_by_pad, signs_of
+from companion.landing.decisions.contact import does_not_fall, is_stopped_by_pad
+from companion.landing.decisions.contact_signs import Signs, signs_of
 from companion.vehicle.pad_reach import over_pad_radius_m
 from link.records import replace
 from tests.companion.facts import CONFIG, drone_at, pad_at, situation

@@ -6,7 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from companion.landing.decisions.contact import Signs, trial_press_m_s2, trial_s
+from companion.landing.decisions.contact import trial_press_m_s2, trial_s
+from companion.landing.decisions.contact_signs import Signs
 from link.records import replace
 from tests.companion.facts import CONFIG
 
