@@ -3,17 +3,19 @@
 The push u of `autopilots.response` is estimated from the drone's reports. What it was before a drone came to rest above
 the vehicle, and what the path's own acceleration adds by drag, is known and no gust: only what u differs by from what
 was expected a second before is new. Of the variance (1 - exp(-2 t / T)) s^2 that the noise adds to u in that time, with
-the model's s, a share k = 1 - P / s^2 is seen, with the estimate's stationary variance P. Its mean square, by k, takes
-the place of s^2 as time passes; what the model says counts as much as `_PRIOR_S` of it. From one report to the next
-it would be the noise of the reports that is seen.
+the model's s, a share k = 1 - P / s^2 is seen, with the estimate's stationary variance P. From one report to the next
+it would be the noise of the reports that is seen. Its mean square, by k, takes the place of what is expected before
+anything is seen, which counts as much as `_PRIOR_S` of it.
+On a path whose acceleration changes, a lean that lags by other than the model's lag looks like a push, too. What that
+may be, by the jerk before either end of the second, is no gust, and the second counts the less for it.
 """
 
 import math
 
 import numpy as np
-from msgspec import Struct
+from msgspec import Struct, field
 
-from companion.autopilots.response import DRAG_PER_S, PUSH_STD_M_S2, ResponseModel
+from companion.autopilots.response import ATTITUDE_LAG_S, DRAG_PER_S, PUSH_STD_M_S2, ResponseModel
 from companion.core.data import Array
 from link.records import replace
 
@@ -22,6 +24,8 @@ _PRIOR_S = 1.0  # as long as the estimate of a push needs to forget how it began
 _FORGETS_S = 20.0  # a gust lasts some seconds, a landing ten or twenty
 _BREAK_S = 0.25
 _COMPARED_S = 1.0  # after which a push is compared with what was expected: ten times the drone's lag
+_EXPECTED_STD_M_S2 = 1.5 * DRAG_PER_S  # light turbulence of MIL-F-8785C: 1.5 m/s near the ground, in 15 knots of wind
+_SETTLES_S = 0.4  # the longest time constant of the estimate of a push: earlier jerk is forgotten
 
 
 class Gusts(Struct, frozen=True, kw_only=True, eq=False):
@@ -33,6 +37,8 @@ class Gusts(Struct, frozen=True, kw_only=True, eq=False):
         seen_ns: monotonic time of the newest report that counts; None before the first.
         expected_m_s2: (2,) push then, by the one that was compared last.
         since_s: how long before that was.
+        smoothed_m_s2: (2,) acceleration of the path, over `_SETTLES_S`.
+        doubt_m2_s4: (2,) what may be no gust of the push that was compared last, as a variance.
     """
 
     square_m2_s4: float = 0.0
@@ -40,11 +46,13 @@ class Gusts(Struct, frozen=True, kw_only=True, eq=False):
     seen_ns: int | None = None
     expected_m_s2: Array | None = None
     since_s: float = 0.0
+    smoothed_m_s2: Array = field(default_factory=lambda: np.zeros(2))
+    doubt_m2_s4: Array = field(default_factory=lambda: np.zeros(2))
 
     @property
     def push_std_m_s2(self) -> float:
         """Standard deviation of an axis of the push."""
-        squares = self.square_m2_s4 + _PRIOR_S * PUSH_STD_M_S2**2
+        squares = self.square_m2_s4 + _PRIOR_S * _EXPECTED_STD_M_S2**2
         return math.sqrt(squares / (self.seen_s + _PRIOR_S))
 
 
@@ -63,18 +71,39 @@ def update_gusts(gusts: Gusts, reported_ns: int, deviation: Array, path_m_s2: Ar
     push, expected_m_s2 = deviation[_PUSH].copy(), gusts.expected_m_s2
     passed_s = _BREAK_S if gusts.seen_ns is None else (reported_ns - gusts.seen_ns) * 1e-9
     if passed_s >= _BREAK_S or expected_m_s2 is None:
+        # How the path went before is unknown, so its acceleration is taken to have begun just now.
+        smoothed, doubt = np.zeros(2), _doubt_m2_s4(path_m_s2)
+        gusts = replace(gusts, smoothed_m_s2=smoothed, doubt_m2_s4=doubt)
         return replace(gusts, seen_ns=reported_ns, expected_m_s2=push, since_s=0.0)
     forgets_hz, since_s = response.cascade.forgets_hz, gusts.since_s + passed_s
     expected_m_s2 = math.exp(-passed_s * forgets_hz) * expected_m_s2 - DRAG_PER_S * passed_s * path_m_s2
+    smoothed = gusts.smoothed_m_s2 + (path_m_s2 - gusts.smoothed_m_s2) * (passed_s / _SETTLES_S)
+    gusts = replace(gusts, seen_ns=reported_ns, smoothed_m_s2=smoothed)
     if since_s < _COMPARED_S:
-        return replace(gusts, seen_ns=reported_ns, expected_m_s2=expected_m_s2, since_s=since_s)
+        return replace(gusts, expected_m_s2=expected_m_s2, since_s=since_s)
     new_share = 1.0 - math.exp(-2.0 * since_s * forgets_hz)
     seen_share = 1.0 - float(response.covariance[_PUSH, _PUSH]) / PUSH_STD_M_S2**2
-    square = float(np.mean(np.square(push - expected_m_s2))) / (new_share * seen_share)
+    doubt = _doubt_m2_s4(path_m_s2 - smoothed)
+    told = _told(np.square(push - expected_m_s2), gusts.doubt_m2_s4 + doubt, new_share * seen_share)
     left = math.exp(-since_s / _FORGETS_S)
-    return Gusts(
-        square_m2_s4=left * gusts.square_m2_s4 + square * since_s,
-        seen_s=left * gusts.seen_s + since_s,
-        seen_ns=reported_ns,
+    return replace(
+        gusts,
+        square_m2_s4=left * gusts.square_m2_s4 + told[0] * since_s,
+        seen_s=left * gusts.seen_s + told[1] * since_s,
         expected_m_s2=push,
+        since_s=0.0,
+        doubt_m2_s4=doubt,
     )
+
+
+def _doubt_m2_s4(changed_m_s2: Array) -> Array:
+    """Return the variance (2,) of a push that is none, while the path's acceleration changes by so much."""
+    return np.square(ATTITUDE_LAG_S * changed_m_s2 / _SETTLES_S)
+
+
+def _told(square_m2_s4: Array, doubt_m2_s4: Array, share: float) -> tuple[float, float]:
+    """Return the mean square of a gust's push that a second shows, by its weight, and the weight, 0 to 1."""
+    expected = share * _EXPECTED_STD_M_S2**2
+    trust = np.square(expected / (expected + doubt_m2_s4))
+    gust_m2_s4 = np.maximum(square_m2_s4 - doubt_m2_s4, 0.0) / share
+    return float(np.mean(trust * gust_m2_s4)), float(np.mean(trust))

@@ -2,7 +2,8 @@
 
 All horizontal motion is told as its deviation from the pad's forecast, in W. A sample's vehicle begins at the newest
 datum, off the forecast by what the estimate may err, keeps its acceleration until that is released, and may brake,
-depart or turn in. What is known of it is `delay` older, but for the error of the estimate, which stays; a change of its
+depart or turn in. What is known of it is `delay` older, but for the error of the estimate: that of its place stays, and
+that of its velocity becomes another one, as likely, with each velocity that the filter learns. A change of its
 acceleration is believed with the filter's lag, and what is known is carried on to the present with it.
 The virtual model follows what is known as the planner does near its target: within jerk and acceleration, on the way of
 least jerk that ends there at rest after the planner's shortest time W, which is laid anew all the time,
@@ -40,23 +41,31 @@ from companion.forecast.samples import (
 
 
 @compiled_kernel
-def _know(seen: Array, first: Array, delay_s: float, believes_s: float, known: Array) -> None:
-    """Write into `known` (3, 2) what is known of a vehicle's place, velocity and acceleration off its forecast.
+def relearn(error: Array, numbers: Array, left: float, std_m_s: float) -> None:
+    """Move the error (2, 2) of place and velocity by one step, with standard normal `numbers` (2,).
 
-    At the newest datum it is nothing: what its place and velocity were off then is the estimate's error, which stays.
+    Of the velocity's there is a share `left`; the rest is made up for by what is new, so that its deviation stays.
+    """
+    new_m_s = std_m_s * math.sqrt(1.0 - left * left)
+    error[1, 0], error[1, 1] = left * error[1, 0] + new_m_s * numbers[0], left * error[1, 1] + new_m_s * numbers[1]
+
+
+@compiled_kernel
+def _know(seen: Array, error: Array, delay_s: float, believes_s: float, known: Array) -> None:
+    """Write into `known` (3, 2) what is known of a vehicle's place, velocity and acceleration off its forecast.
 
     Args:
         seen: (3, 2) the vehicle `delay_s` ago.
-        first: (3, 2) at the newest datum.
+        error: (2, 2) by which its place and velocity were more than the estimate's then.
         delay_s: since then.
         believes_s: lag of the acceleration.
         known: of the step before.
     """
     for i in range(2):
         known[2, i] += (seen[2, i] - known[2, i]) * min(DT_S / believes_s, 1.0)
-        rate = seen[1, i] - first[1, i]
+        rate = seen[1, i] - error[1, i]
         known[1, i] = rate + known[2, i] * delay_s
-        known[0, i] = seen[0, i] - first[0, i] + (rate + 0.5 * known[2, i] * delay_s) * delay_s
+        known[0, i] = seen[0, i] - error[0, i] + (rate + 0.5 * known[2, i] * delay_s) * delay_s
 
 
 @compiled_kernel
@@ -168,9 +177,13 @@ def _fly(path: Array, samples: Samples, sample: int, descent: Descent, out: Arra
     model, state = course.model.copy(), samples.deviation[sample].copy()
     known, off, expected, lean = np.zeros((3, 2)), np.empty((2, 2)), np.empty(2), np.empty(2)
     before_m_s2, held, waited = np.empty(2), course.air_enu_m_s2 + state[3], 0
+    # By another sample's numbers than those of its gusts, and so independent of them.
+    error, others = path[0, :2].copy(), samples.pushes[sample - 1]
+    left = math.exp(-drone.relearns_hz * DT_S)
     for k in range(steps):
         seen = max(before + k - late, 0.0)
-        _know(path[int(seen)], path[0], (before + k - seen) * DT_S, drone.believes_s, known)
+        _know(path[int(seen)], error, (before + k - seen) * DT_S, drone.believes_s, known)
+        relearn(error, others[k], left, drone.error_std_m_s)
         height_m, sink_m_s = course.way_down[0, k - waited], -course.way_down[1, k - waited]
         cx, cy = course.direction[k, 0], course.direction[k, 1]
         expected[0] = course.along_m_s2[k] * cx - course.left_m_s2[k] * cy

@@ -25,7 +25,8 @@ class Follower(NamedTuple):
     """How the drone follows: gains and lags of its cascade, of its planner, and the limits of both.
 
     `led_share` is of a change of the acceleration asked for what the lean follows at once: 1 where setpoints are led.
-    `way_s` is how long the planner's shortest way takes.
+    `way_s` is how long the planner's shortest way takes. The vehicle's velocity is known with an error of
+    `error_std_m_s` along an axis, which becomes another one `relearns_hz` times a second.
     """
 
     stiffness_per_s2: float
@@ -38,6 +39,8 @@ class Follower(NamedTuple):
     push_std_m_s2: float
     way_s: float
     believes_s: float
+    relearns_hz: float
+    error_std_m_s: float
     acceleration_max_m_s2: float
     jerk_max_m_s3: float
     level_m_s2: float
@@ -101,7 +104,7 @@ class Samples(NamedTuple):
         delay_s: (n,) of what is known of it.
         deviation: (n, 4, 2) state of the cascade now.
         vertical: (n, 2) height that the drone is lower than believed, m, and how much faster it sinks, m/s.
-        pushes: (n, m, 2) standard normal.
+        pushes: (n, m, 2) standard normal: of the sample's gusts, and of the errors of the one after it.
     """
 
     vehicle: Array

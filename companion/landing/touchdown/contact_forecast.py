@@ -1,5 +1,7 @@
 """The forecast of the contact that a descent leads to if it goes on, made ten to twenty times a second; pure."""
 
+import math
+
 import numpy as np
 
 from companion.core.data import Quantity
@@ -13,7 +15,7 @@ from companion.forecast.samples import Descent, Samples
 from companion.landing.decisions.waiting import is_moment_quiet
 from companion.landing.state.memory import ForecastMemory, StepMemory
 from companion.landing.state.step_data import StepInputs, System
-from companion.landing.touchdown.rollout_errors import as_driven, draw_errors
+from companion.landing.touchdown.rollout_errors import as_driven, draw_errors, relearns_hz
 from companion.landing.touchdown.rollout_inputs import (
     course_of,
     deviation_now,
@@ -98,8 +100,9 @@ def forecast_contact(
         left_m_s2=float(course.left_m_s2[0]),
         stands=stands,
     )
+    vehicle = as_driven(errors.vehicle, memory.vehicle.hindsight.driving, course.direction[0], stands=stands)
     samples = Samples(
-        vehicle=as_driven(errors.vehicle, memory.vehicle.hindsight.driving, course.direction[0], stands=stands),
+        vehicle=vehicle,
         kind=events.kind,
         event=events.event,
         delay_s=np.maximum(delay_s, 0.0),
@@ -107,9 +110,11 @@ def forecast_contact(
         vertical=errors.vertical,
         pushes=numbers.pushes,
     )
+    error_std_m_s = math.sqrt(float(np.mean(np.square(vehicle[:, 1]))))
+    relearnt_hz = relearns_hz(then)
     descent = Descent(
         course=course,
-        drone=follower_of(memory, situation, inputs, config),
+        drone=follower_of(memory, situation, inputs, config, relearns_hz=relearnt_hz, error_std_m_s=error_std_m_s),
         rules=rules_of(memory, relative, inputs, config),
     )
     ends = roll_out(samples, descent, age_s)

@@ -59,6 +59,17 @@ def draw_errors(then: VehicleEstimate, pad: PadPath, response: ResponseModel, nu
     )
 
 
+def relearns_hz(then: VehicleEstimate) -> float:
+    """Return how fast the error of the vehicle's velocity becomes another one, 1/s.
+
+    In a steady filter the data take from the velocity's variance P_vv what the acceleration's error adds, 2 P_va. So
+    the error decays by 2 P_va / P_vv, and the acceleration's, of which it is a part, holds half of that up.
+    """
+    of_velocity = float(np.trace(then.covariance[3:5, 3:5]))
+    with_acceleration = float(np.trace(then.covariance[3:5, 6:8]))
+    return max(with_acceleration, 0.0) / of_velocity if of_velocity > 0.0 else 0.0
+
+
 def _draw_vehicle(then: VehicleEstimate, pad: PadPath, normals: Array, uniforms: Array) -> Array:
     """Return how far place, velocity and acceleration (n, 9) are off, each sample drawn from one of the models.
 

@@ -129,8 +129,25 @@ def way_time_s(cascade: Cascade, shortest_s: float) -> float:
     return max(shortest_s, _WAY_LAGS * cascade.lean_lag_s)
 
 
-def follower_of(memory: StepMemory, situation: Situation, inputs: StepInputs, config: CompanionConfig) -> Follower:
-    """Return how the drone follows, by its autopilot's gains, the planner's shortest way and the limits."""
+def follower_of(
+    memory: StepMemory,
+    situation: Situation,
+    inputs: StepInputs,
+    config: CompanionConfig,
+    *,
+    relearns_hz: float,
+    error_std_m_s: float,
+) -> Follower:
+    """Return how the drone follows, by its autopilot's gains, the planner's shortest way and the limits.
+
+    Args:
+        memory: with the gusts.
+        situation: of the step.
+        inputs: of the step.
+        config: the companion's.
+        relearns_hz: how fast the error of the vehicle's velocity becomes another one.
+        error_std_m_s: its deviation along an axis.
+    """
     if inputs.response is None or situation.approach is None:
         raise ValueError("no autopilot flies")
     cascade, limits = inputs.response.cascade, inputs.limits
@@ -148,6 +165,8 @@ def follower_of(memory: StepMemory, situation: Situation, inputs: StepInputs, co
         push_std_m_s2=memory.forecast.gusts.push_std_m_s2,
         way_s=way_time_s(cascade, config.guidance.mpc.intercept_time_min_s),
         believes_s=_BELIEVES_BY_SENSOR_S if is_told else _BELIEVES_S,
+        relearns_hz=relearns_hz,
+        error_std_m_s=error_std_m_s,
         acceleration_max_m_s2=limits.acceleration_max_m_s2,
         jerk_max_m_s3=limits.jerk_max_m_s3,
         level_m_s2=level_m_s2,

@@ -52,6 +52,27 @@ def test_an_error_of_the_estimate_stays_an_error() -> None:
     assert end[ERROR] == pytest.approx(0.13, abs=1e-6)
 
 
+def test_an_error_of_the_velocity_brings_the_drone_beside_the_pad_unless_it_is_learnt_anew() -> None:
+    errs = samples()
+    errs.vehicle[0, 1] = [0.3, -0.1]
+    stays_m, goes_m = (roll_out(errs, descent(0.8, relearns_hz=hz), 0.1)[0, ERROR] for hz in (0.0, 5.0))
+    assert goes_m < 0.5 * stays_m
+
+
+def test_an_error_of_the_velocity_keeps_its_deviation_while_it_becomes_another_one() -> None:
+    generator, relearns_hz, std_m_s = np.random.default_rng(6), 2.5, 0.2
+    error, seen = np.array([[0.1, 0.1], [0.9, -0.9]]), []
+    for _ in range(20_000):
+        rollout.relearn(error, generator.standard_normal(2), math.exp(-relearns_hz * DT_S), std_m_s)
+        seen.append(error[1].copy())
+    later = round(1.0 / relearns_hz / DT_S)
+    errors = np.array(seen[100:])
+    alike = np.mean(errors[later:] * errors[:-later]) / std_m_s**2
+    assert np.mean(np.square(errors)) == pytest.approx(std_m_s**2, rel=0.1)
+    assert alike == pytest.approx(math.exp(-1.0), abs=0.06)
+    assert error[0] == pytest.approx([0.1, 0.1])
+
+
 @pytest.mark.parametrize("speed_m_s", [0.41, 0.45])
 def test_a_contact_after_a_short_wait_comes_as_much_later(speed_m_s: float) -> None:
     plain, moves = descent(0.8), samples()
@@ -104,8 +125,9 @@ def test_machine_code_is_its_python(monkeypatch: pytest.MonkeyPatch) -> None:
         deviation=0.1 * generator.standard_normal(several.deviation.shape),
         pushes=generator.standard_normal(several.pushes.shape),
     )
-    compiled = roll_out(several, descent(push_std_m_s2=0.5), 0.17)
-    for name in ("drive", "_know", "_waits", "_breaks_off", "steer", "plan", "follow", "_touch", "_fly"):
+    uneven = descent(push_std_m_s2=0.5, relearns_hz=3.0, error_std_m_s=0.1)
+    compiled = roll_out(several, uneven, 0.17)
+    for name in ("drive", "relearn", "_know", "_waits", "_breaks_off", "steer", "plan", "follow", "_touch", "_fly"):
         monkeypatch.setattr(rollout, name, getattr(rollout, name).py_func)
-    plain = roll_out.py_func(several, descent(push_std_m_s2=0.5), 0.17)
+    plain = roll_out.py_func(several, uneven, 0.17)
     assert compiled == pytest.approx(plain, abs=1e-12)
