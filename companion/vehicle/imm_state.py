@@ -181,7 +181,7 @@ def is_placed_by_sightings(state: ImmState, receivers: ReceiversConfig) -> bool:
 
 
 _TOLD_BY = {  # the states that a quantity tells
-    Quantity.VELOCITY: np.array([2, 3, 4, 5, 9, 11, BEND]),
+    Quantity.VELOCITY: np.array([2, 3, 4, 5, 9, 10, 11, BEND]),
     Quantity.HEADING: np.array([HEADING]),
     Quantity.YAW_RATE: np.array([CURVATURE]),
     Quantity.ACCELERATION: np.array([LEAK]),

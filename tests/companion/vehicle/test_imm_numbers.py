@@ -4,10 +4,16 @@ import numpy as np
 import pytest
 
 from companion.config.estimation import ImmConfig
+from companion.core.data import Measurement, Quantity
+from companion.vehicle.imm import ImmModel
 from companion.vehicle.imm_forecast import forecast_modes
+from companion.vehicle.imm_kernels import HEADING
 from companion.vehicle.imm_noise import BEND_ACCELERATION_STD, BEND_STD
 from companion.vehicle.imm_numbers import Deck, noises_with, numbers_of
-from companion.vehicle.imm_swing import SIZE
+from companion.vehicle.imm_sensors import antenna_velocity
+from companion.vehicle.imm_swing import PITCH_RATE, ROLL_RATE, SIZE
+from link.records import replace
+from tests.companion.vehicle.rides import now_ns
 from tests.companion.vehicle.test_imm_kernels import MOTION, NOISE, a_state
 
 JERK, LATERAL = 0, 2
@@ -56,3 +62,18 @@ def test_forecast_over_two_kinds_of_road_has_the_mean_of_their_variances() -> No
         variances.append(told[6][1, 3] ** 2)
     assert variances[1] > 1.5 * variances[0]
     assert variances[2] == pytest.approx(0.5 * (variances[0] + variances[1]), rel=1e-6)
+
+
+@pytest.mark.parametrize("is_afloat", [False, True])
+def test_a_velocity_that_contradicts_opens_every_rate_and_slope_that_it_is_made_of(*, is_afloat: bool) -> None:
+    deck = Deck(antenna_to_pad_m=(1.0, 0.0, 0.5), is_afloat=is_afloat)
+    imm = ImmModel(config=ImmConfig(), deck=deck)
+    fix = Measurement(t_ns=now_ns(0.0), quantity=Quantity.POSITION, value=np.zeros(3), covariance=1e-4 * np.eye(3))
+    start = imm.start(fix)
+    contradicts = replace(fix, quantity=Quantity.VELOCITY, value=np.array([9.0, 0.0, 3.0]))
+    opened = imm.recover(start, contradicts).modes[1][0].diagonal() - start.modes[1][0].diagonal()
+    x = np.ones(SIZE)
+    _, H = antenna_velocity(x, np.zeros(4))
+    for state in np.flatnonzero(np.abs(H).max(axis=0) > 0.0).tolist():
+        if state not in (HEADING, ROLL_RATE, PITCH_RATE):  # of which other sensors tell
+            assert opened[state] == imm.numbers.prior_variances[state]
