@@ -6,7 +6,8 @@ depart or turn in. What is known of it is `delay` older, but for the error of th
 that of its velocity becomes another one, as likely, with each velocity that the filter learns. A change of its
 acceleration is believed with the filter's lag, and what is known is carried on to the present with it.
 The virtual model follows what is known as the planner does near its target: within jerk and acceleration, on the way of
-least jerk that ends there at rest after the planner's shortest time W, which is laid anew all the time,
+least jerk that ends there at rest after the planner's shortest time W, or a longer one that takes no more jerk than
+there is; it is laid anew all the time,
 
     j = 60 / W^3 (p - e) + 36 / W^2 (v - e') + 9 / W (a - s'')
 
@@ -38,6 +39,8 @@ from companion.forecast.samples import (
     Samples,
     drive,
 )
+
+_LONGER, _LONGER_WAYS = 1.2, 7  # a way is tried by steps of a fifth, up to three times as long
 
 
 @compiled_kernel
@@ -90,7 +93,7 @@ def _breaks_off(off: Array, height_m: float, sink_m_s: float, rules: Rules) -> b
 
 @compiled_kernel
 def steer(model: Array, state: Array, off: Array, known: Array, drone: Follower) -> tuple[float, float]:
-    """Return the jerk, east and north, by which the drone comes over what is known of the pad.
+    """Return the jerk, east and north, by which the drone comes over what is known of the pad, by the shortest way.
 
     Args:
         model: (3, 2) the virtual model, off the pad's forecast.
@@ -102,9 +105,14 @@ def steer(model: Array, state: Array, off: Array, known: Array, drone: Follower)
     # Axis by axis in plain numbers: in a hundred steps of each sample arrays take twice as long.
     lag_s = (1.0 - drone.led_share) / drone.turns_hz
     rate_x, rate_y = off[1, 0] + lag_s * (state[2, 0] - model[2, 0]), off[1, 1] + lag_s * (state[2, 1] - model[2, 1])
-    place, rate, acceleration = 60.0 / drone.way_s**3, 36.0 / drone.way_s**2, 9.0 / drone.way_s
-    jx = -place * off[0, 0] - rate * rate_x - acceleration * (model[2, 0] - known[2, 0])
-    jy = -place * off[0, 1] - rate * rate_y - acceleration * (model[2, 1] - known[2, 1])
+    way_s, jx, jy = drone.way_s, 0.0, 0.0
+    for _ in range(_LONGER_WAYS):
+        place, rate, acceleration = 60.0 / way_s**3, 36.0 / way_s**2, 9.0 / way_s
+        jx = -place * off[0, 0] - rate * rate_x - acceleration * (model[2, 0] - known[2, 0])
+        jy = -place * off[0, 1] - rate * rate_y - acceleration * (model[2, 1] - known[2, 1])
+        if jx * jx + jy * jy <= drone.jerk_max_m_s3**2:
+            break
+        way_s *= _LONGER
     return jx, jy
 
 

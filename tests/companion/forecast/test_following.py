@@ -104,7 +104,11 @@ def follower(cascade: Cascade, jerk_max_m_s3: float) -> Follower:
     )
 
 
-@pytest.mark.parametrize(("cascade", "jerk_max_m_s3"), [(ARDUPILOT, 8.0), (PX4, 20.0)], ids=["ardupilot", "px4"])
+@pytest.mark.parametrize(
+    ("cascade", "jerk_max_m_s3"),
+    [(ARDUPILOT, 8.0), (ARDUPILOT, 3.0), (PX4, 20.0), (PX4, 3.0)],
+    ids=["ardupilot", "ardupilot, hardly any jerk", "px4", "px4, hardly any jerk"],
+)
 def test_rollouts_come_over_the_pad_as_the_planner_does(cascade: Cascade, jerk_max_m_s3: float) -> None:
     limits = replace(LIMITS, jerk_max_m_s3=jerk_max_m_s3, acceleration_max_m_s2=DRONE.acceleration_max_m_s2)
     drone, errors = follower(cascade, jerk_max_m_s3), []
