@@ -26,10 +26,14 @@ from link.recording.recorder import Recorder
 from link.zenoh.keys import Keys
 
 
-def warm_up(system: System) -> None:
+def warm_up(guidance: Guidance, config: CompanionConfig) -> None:
     """Let everything that is compiled at its first use be compiled now: no step of a flight may wait for it.
 
     The estimators see to their own kernels when they are made.
+
+    Args:
+        guidance: law that is flown.
+        config: all numbers.
     """
     offset_s = np.arange(0.0, 4.01, 0.2)
     ahead = np.column_stack([30.0 + 8.0 * offset_s, 2.0 * offset_s, np.full_like(offset_s, 2.0)])
@@ -46,11 +50,11 @@ def warm_up(system: System) -> None:
         request = PlanRequest(
             state=state,
             target=target,
-            limits=system.config.limits.flight_limits(),
+            limits=config.limits.flight_limits(),
             floor_enu_m=np.zeros_like(offset_s),
-            dt_s=1.0 / system.config.setpoints.rate_hz,
+            dt_s=1.0 / config.setpoints.rate_hz,
         )
-        memory, _ = system.guidance.plan(memory, request)
+        memory, _ = guidance.plan(memory, request)
     _compile_pad_motion(offset_s)
     compile_rollout()
 
@@ -97,7 +101,7 @@ def build_node(
         estimator=make_estimator(config.estimator, is_silent=config.silent_vehicle is not None),
         guidance=make_guidance(config.guidance.kind, config.guidance),
     )
-    warm_up(system)
+    warm_up(system.guidance, config)
     session = MavlinkSession(system_id, target_system_id=system_id, signing=signing, records_input=records_input)
     if recorder is not None:
         return RecordingNode(

@@ -1,7 +1,8 @@
 """Compiles the numerical kernels once after an installation: `python -m scenarios.lockstep.warm_up`.
 
-They are kept for the user who runs it: in the folder NUMBA_CACHE_DIR, else beside the sources, else in the user's
-cache. What was compiled for other sources goes. A mark beside them says for which sources that was done.
+Two processes share the work. What is compiled is kept for the user who runs it: in the folder NUMBA_CACHE_DIR, else
+beside the sources, else in the user's cache. What was compiled for other sources goes. A mark beside them says for
+which sources that was done.
 """
 
 import hashlib
@@ -12,6 +13,7 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cache
+from multiprocessing import get_context
 from pathlib import Path
 
 from link.errors import UserError
@@ -37,6 +39,39 @@ def warm_process() -> None:
 
     Lockstep(load_scenario("straight_5"), seed=1).step()
     spare_present_objects()
+
+
+def _compile_in_two() -> None:
+    """Compile the estimator's kernels here, and what else there is in a process beside.
+
+    Raises:
+        UserError: there is no place to keep what is compiled.
+    """
+    from companion.config.estimation import EstimatorConfig  # noqa: PLC0415 (see above)
+    from companion.vehicle.factory import make_estimator  # noqa: PLC0415 (see above)
+
+    beside = get_context("spawn").Process(target=_compile_simulator_and_planner, daemon=True)
+    beside.start()
+    try:
+        make_estimator(EstimatorConfig())
+    finally:
+        beside.join()
+
+
+def _compile_simulator_and_planner() -> None:
+    try:
+        from companion.runtime.build import make_guidance, warm_up  # noqa: PLC0415 (see above)
+        from link.zenoh.keys import Keys  # noqa: PLC0415 (see above)
+        from scenarios.catalogue.catalogue import load_scenario  # noqa: PLC0415 (see above)
+        from scenarios.lockstep.lockstep import START_NS  # noqa: PLC0415 (see above)
+        from scenarios.simulation.simulation import Simulation  # noqa: PLC0415 (see above)
+
+        scenario = load_scenario("straight_5")
+        Simulation(scenario, 1, Keys(), START_NS, instant=False, publishes_truth=False).step()
+        config = scenario.system.companion
+        warm_up(make_guidance(config.guidance.kind, config.guidance), config)
+    except UserError:  # the process that waits for this one comes to the same, and tells it
+        sys.exit(EXIT_USER_ERROR)
 
 
 def compile_once() -> None:
@@ -107,6 +142,7 @@ def main() -> int:
     sys.stderr.write("compiling the numerical kernels, once; this takes a minute or two\n")
     try:
         with _told():
+            _compile_in_two()
             warm_process()
     except UserError as error:
         sys.stderr.write(f"scenarios.lockstep.warm_up: {error}\n")

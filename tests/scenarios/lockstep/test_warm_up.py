@@ -1,5 +1,7 @@
 """The kernels are compiled before a run over the wire, once for the sources that there are."""
 
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -51,3 +53,23 @@ def test_kernels_that_could_not_be_compiled_are_an_error(monkeypatch: pytest.Mon
     monkeypatch.setattr("subprocess.run", Compiler(2))
     with pytest.raises(UserError, match="compiled"):
         warm_up.compile_once()
+
+
+_IN_TWO = """
+from companion.config.estimation import EstimatorConfig
+from companion.vehicle.factory import make_estimator
+from link.compiled import count_compiled
+from scenarios.lockstep import warm_up
+make_estimator(EstimatorConfig())
+of_the_estimator, _ = count_compiled()
+warm_up._compile_simulator_and_planner()
+of_both, _ = count_compiled()
+warm_up.warm_process()
+print(of_the_estimator, of_both, *count_compiled())
+"""
+
+
+def test_two_processes_that_share_the_work_leave_nothing_to_compile() -> None:
+    told = subprocess.run([sys.executable, "-c", _IN_TWO], capture_output=True, text=True, check=True).stdout
+    of_the_estimator, of_both, of_a_step, _ = map(int, told.split())
+    assert 0 < of_the_estimator < of_both == of_a_step
