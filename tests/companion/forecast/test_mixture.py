@@ -2,11 +2,12 @@
 
 import numpy as np
 import pytest
+from scipy.linalg import solve_continuous_are
 
 from companion.autopilots.response import ResponseModel
 from companion.core.data import Array, Mixture, VehicleEstimate
 from companion.forecast.draws import draws
-from companion.landing.touchdown.rollout_errors import draw_errors
+from companion.landing.touchdown.rollout_errors import draw_errors, relearns_hz
 from tests.companion.autopilots.test_response import CASCADES, OFFSET_S
 from tests.companion.facts import pad_at
 
@@ -14,9 +15,8 @@ CALM, WILD = np.diag([0.02**2] * 3 + [0.05**2] * 6), np.diag([0.02**2] * 3 + [0.
 OFF = np.array([0.0] * 6 + [-3.0, 1.0, 0.0])
 
 
-def _drawn(mixture: Mixture | None, covariance: Array, pad_std_m: float = 0.01) -> Array:
-    """Places, velocities and accelerations of the samples, (n, 3, 2)."""
-    then = VehicleEstimate(
+def _estimate(covariance: Array, mixture: Mixture | None = None) -> VehicleEstimate:
+    return VehicleEstimate(
         t_ns=0,
         position_enu_m=np.zeros(3),
         velocity_enu_m_s=np.zeros(3),
@@ -26,6 +26,11 @@ def _drawn(mixture: Mixture | None, covariance: Array, pad_std_m: float = 0.01) 
         yaw_rate_rad_s=0.0,
         mixture=mixture,
     )
+
+
+def _drawn(mixture: Mixture | None, covariance: Array, pad_std_m: float = 0.01) -> Array:
+    """Places, velocities and accelerations of the samples, (n, 3, 2)."""
+    then = _estimate(covariance, mixture)
     response = ResponseModel(next(iter(CASCADES.values())), OFFSET_S)
     return draw_errors(then, pad_at(std_m=pad_std_m), response, draws()).vehicle
 
@@ -55,3 +60,21 @@ def test_models_that_differ_in_place_spread_it_once() -> None:
     total = CALM + np.mean([np.outer(one, one) for one in off], axis=0)
     drawn = _drawn(mixture, total, pad_std_m=float(np.sqrt(total[0, 0])))[:, 0]
     assert drawn[:, 0].std() == pytest.approx(np.sqrt(total[0, 0]), rel=0.05)
+
+
+@pytest.mark.parametrize("jerk_psd_m2_s5", [0.1, 4.0])
+def test_error_of_the_velocity_is_learnt_anew_as_fast_as_a_steady_filters_errors_forget(jerk_psd_m2_s5: float) -> None:
+    # Kalman and Bucy's filter of velocity and acceleration, which measures the velocity: e' = (A - K C) e + noise, so
+    # that the correlation of e with what it was before begins to fall by (A - K C) P.
+    motion, seen, noise = np.array([[0.0, 1.0], [0.0, 0.0]]), np.array([[1.0, 0.0]]), 0.01
+    P = solve_continuous_are(motion.T, seen.T, np.diag([0.0, jerk_psd_m2_s5]), np.array([[noise]]))
+    errors = motion - P @ seen.T @ seen / noise
+    falls_hz = -float((errors @ P)[0, 0]) / float(P[0, 0])
+    covariance = 0.1 * np.eye(9)
+    for axis in range(3):
+        covariance[np.ix_([3 + axis, 6 + axis], [3 + axis, 6 + axis])] = P
+    assert relearns_hz(_estimate(covariance)) == pytest.approx(falls_hz)
+
+
+def test_velocity_whose_error_has_nothing_to_do_with_the_accelerations_keeps_it() -> None:
+    assert relearns_hz(_estimate(CALM)) == 0.0
