@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
-from link.program.cli import EXIT_INTERRUPTED, EXIT_OK, SetOption, make_app, run_app
+from link.program.cli import EXIT_OK, SetOption, make_app, run_app
 from link.zenoh.command_line import NameArguments, ZenohArguments
 
 _EXAMPLES = {
@@ -96,7 +96,7 @@ def sim_autopilot(
     options = RunOptions(devices=devices, speed=speed, keys=names.keys(), zenoh=endpoints.options())
     signal.signal(signal.SIGTERM, _interrupt)
     run(settings, autopilot, options)
-    return EXIT_INTERRUPTED
+    return EXIT_OK
 
 
 def _given(**options: Any) -> dict[str, Any]:
@@ -111,7 +111,7 @@ def _datum(datum: tuple[float, float, float] | None) -> dict[str, float]:
 
 
 def _interrupt(_signal: int, _frame: FrameType | None) -> None:
-    """End on SIGTERM as on Ctrl-C, with everything closed."""
+    """End on SIGTERM as on Ctrl-C before the first step, with everything closed."""
     raise KeyboardInterrupt
 
 

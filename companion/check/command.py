@@ -73,6 +73,8 @@ def check(
     from link.transports.opening import open_transport
     from link.zenoh.session import open_session
 
+    if keep_file.is_dir():
+        raise UserError(f"--keep {keep_file}: is a folder; name a file in it")
     settings = load_settings(config, CompanionConfig, COMPANION, changes)
     signing = mavlink.signing()
     back = None if restore is None else read_kept(restore)

@@ -3,6 +3,8 @@
 Kept light, so that `--help` is quick: no numerics and no Zenoh are imported here.
 """
 
+import errno
+import io
 import os
 import sys
 import threading
@@ -105,6 +107,8 @@ def run_app(name: str, app: App, args: Sequence[str] | None = None) -> int:
         0, the function's own code, 2 after a mistake of the user, 130 after Ctrl-C.
     """
     collect_rarely()
+    if sys.stdout is None:  # closed by who started it
+        sys.stdout = io.StringIO()
     command = command_of(app)
     arguments: list[str] = []
     try:
@@ -112,12 +116,18 @@ def run_app(name: str, app: App, args: Sequence[str] | None = None) -> int:
         if not arguments and getattr(command, "commands", None) and not command.invoke_without_command:
             arguments = ["--help"]
         result = command.main(args=arguments, prog_name=name, standalone_mode=False)
+        sys.stdout.flush()
     except UserError as error:
         return _fail(name, str(error))
     except typer.TyperException as error:
         context = getattr(error, "ctx", None)
         where = _path_of(command, name, arguments) if context is None else context.command_path
         return _fail(name, _whole(error), hint=f"(see {where} -h)")
+    except OSError as error:
+        if error.errno != errno.ENOSPC:
+            raise
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # what is left of the output ends there
+        return _fail(name, "no space is left where it writes to: free some, or write elsewhere")
     except (KeyboardInterrupt, typer.Abort):
         return EXIT_INTERRUPTED
     return result if isinstance(result, int) else EXIT_OK

@@ -8,6 +8,7 @@ from typing import TypedDict
 import zenoh
 
 from link.errors import UserError
+from link.program.text import read_text
 from link.zenoh.exposure import check_exposure, openings_of
 from link.zenoh.options import DEFAULT_ENDPOINT, ZenohOptions
 
@@ -49,7 +50,7 @@ def is_matched(entity: object) -> bool:
 
 
 def _config(options: ZenohOptions) -> zenoh.Config:
-    config = zenoh.Config() if options.config_file is None else _config_from_file(options)
+    config = zenoh.Config() if options.config_file is None else _config_from_file(options.config_file)
     if options.mode is not None:
         _insert(config, "mode", options.mode)
     if options.connect:
@@ -120,13 +121,14 @@ def _fill_connection(config: zenoh.Config) -> None:
     _fill(config, "connect/exit_on_failure", is_client)
 
 
-def _config_from_file(options: ZenohOptions) -> zenoh.Config:
-    path = options.config_file
-    if path is None or not path.is_file():
-        raise UserError(f"--zenoh-config {path}: there is no such file")
+def _config_from_file(path: Path) -> zenoh.Config:
     try:
-        return zenoh.Config.from_json5(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError, zenoh.ZError) as error:
+        text = read_text(path)
+    except UserError as error:
+        raise UserError(f"--zenoh-config {error}") from None
+    try:
+        return zenoh.Config.from_json5(text)
+    except zenoh.ZError as error:
         place = _JSON5_PLACE.search(str(error))
         if place is None:
             raise UserError(f"--zenoh-config {path}: {_plain(str(error))}") from error

@@ -1,6 +1,7 @@
 """Sending an operator's command to the companion over Zenoh."""
 
 import difflib
+import math
 import time
 from enum import Enum
 from typing import TypeVar
@@ -24,7 +25,7 @@ def order_of(command: str, offset_m: Vector3 | None, frame: str | None) -> Order
     """Return the order that an operator has written.
 
     Raises:
-        UserError: there is no such command or frame, a follow has no offset, or another command has one.
+        UserError: there is no such command or frame, a follow has no finite offset, or another command has one.
     """
     wanted = _named(Command, "command", command)
     if wanted is not Command.FOLLOW:
@@ -33,6 +34,8 @@ def order_of(command: str, offset_m: Vector3 | None, frame: str | None) -> Order
         return Order(command=wanted)
     if offset_m is None:
         raise UserError("follow needs --offset AHEAD LEFT UP, in metres from the pad's centre")
+    if not all(math.isfinite(one) for one in offset_m):
+        raise UserError(f"--offset {' '.join(map(str, offset_m))}: give three finite numbers of metres")
     looks = StationFrame.VEHICLE if frame is None else _named(StationFrame, "frame", frame)
     return Order(command=wanted, station=Station(offset_m=offset_m, frame=looks))
 

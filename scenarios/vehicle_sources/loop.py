@@ -66,7 +66,11 @@ class ReceiverLoop:
         zenoh.declare_alive(keys.alive)
 
     def run(self) -> None:
-        """Run."""
+        """Run until a signal asks for the end, or to the end of a recording.
+
+        Raises:
+            UserError: a recording holds no fix.
+        """
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, self._stop)
         with ExitStack() as stack:
@@ -83,6 +87,8 @@ class ReceiverLoop:
         self._service.stopping()
         self._service.close()
         self._log.info("stopped", fixes=self._fixes, unsendable=self._unsendable, **self._receiver.counts)
+        if isinstance(transport, FileTransport) and transport.is_at_end and not self._fixes:
+            raise UserError(f"{self._device}: holds no fix; name a recording of what a receiver sends")
 
     def _stop(self, *_: object) -> None:
         self._stopping = True

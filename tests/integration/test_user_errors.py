@@ -2,6 +2,8 @@
 
 import signal
 import socket
+import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -50,7 +52,7 @@ MISTAKES = [
     # endpoints and names on Zenoh
     ("companion", f"{FREE} -e tpc/127.0.0.1:7447", ["--connect 'tpc/127.0.0.1:7447'", "tcp/127.0.0.1:7447"]),
     ("companion", f"{FREE} -m pear", ["--mode 'pear'", "peer, client, router"]),
-    ("companion", f"{FREE} --zenoh-config none.json5", ["none.json5", "no such file"]),
+    ("companion", f"{FREE} --zenoh-config none.json5", ["none.json5", "No such file"]),
     ("companion", f"{FREE} --ns a*b", ["--ns 'a*b'", "use letters"]),
     ("companion", f"{FREE} --vehicle one --drone one", ["'one'", "different names"]),
     ("ground-vehicle", "--scenario straight_5 -l tcp/127.0.0.1:{tcp}", ["{tcp}", "in use", "choose another port"]),
@@ -100,6 +102,9 @@ MISTAKES = [
     ("scenarios", "run straight_5 --out key.toml", ["key.toml", "--out"]),
     ("scenarios", "command strt", ["'strt'", "did you mean start?"]),
     ("scenarios", "command up", ["'up'", "start, abort, hold"]),
+    ("scenarios", "command follow --offset 1 nan 3", ["--offset 1.0 nan 3.0", "three finite numbers"]),
+    ("companion", "check --write --keep .", ["--keep .", "is a folder"]),
+    ("companion", "--zenoh-config .", ["--zenoh-config .", "Is a directory"]),
 ]
 
 
@@ -136,6 +141,15 @@ def test_a_mistake_is_one_line_that_names_it_and_exit_code_2(
     assert err.startswith(f"{name}: ")
     for word in words:
         assert word.format(**here) in err
+
+
+@pytest.mark.parametrize("arguments", ["companion --print-config", "scenarios list", "companion --help"])
+def test_output_that_finds_no_space_is_one_line_and_exit_code_2(arguments: str) -> None:
+    name, *rest = arguments.split()
+    with Path("/dev/full").open("w", encoding="utf-8") as full:
+        ended = subprocess.run([sys.executable, "-m", name, *rest], stdout=full, stderr=subprocess.PIPE, check=False)
+    assert (ended.returncode, ended.stderr.count(b"\n")) == (2, 1), ended.stderr
+    assert b"no space is left" in ended.stderr
 
 
 @pytest.mark.slow
