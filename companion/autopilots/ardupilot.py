@@ -69,6 +69,7 @@ _LIMITS = (
     _VERTICAL_ACCELERATION,
     _VERTICAL_JERK,
 )
+_CARRIED_MIN_S = 0.1  # ModeGuided::get_timeout_ms
 # Taken while the parameters are unknown: the defaults of release 4.6.
 _JERK_DEFAULT_M_S3 = 5.0  # horizontally and vertically
 _ACCELERATION_DEFAULT_M_S2 = 2.5
@@ -174,9 +175,10 @@ class ArduPilotDriver:
         )
 
     def shaping(self, parameters: Mapping[str, float]) -> Shaping | None:
-        """Return the path by which GUIDED carries setpoints on."""
+        """Return the path by which GUIDED carries setpoints on, for a tenth of a second at least, whatever is set."""
+        told_s = parameters.get(self.timeout_parameter, self.timeout_default_s)
         return Shaping(
-            carried_s=parameters.get(self.timeout_parameter, self.timeout_default_s),
+            carried_s=max(told_s, _CARRIED_MIN_S) if math.isfinite(told_s) else self.timeout_default_s,
             acceleration_m_s2=_known(find_limit(parameters, _ACCELERATION), _ACCELERATION_DEFAULT_M_S2),
             jerk_m_s3=_known(_shaping_jerk_m_s3(parameters), _JERK_DEFAULT_M_S3),
             vertical_acceleration_m_s2=_known(

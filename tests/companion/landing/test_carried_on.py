@@ -176,3 +176,10 @@ def test_climb_is_carried_on_to_the_fastest_that_is_planned(climb_m_s: float, up
     rate_m_s, rest_m_s2 = bound_climb(climb_m_s, up_m_s2, 2.5, shaping)
     led_m_s = climb_m_s + up_m_s2 * shaping.vertical_acceleration_m_s2 / shaping.vertical_jerk_m_s3
     assert rate_m_s + rest_m_s2 * shaping.carried_s <= max(2.5, led_m_s) + 1e-9
+
+
+@pytest.mark.parametrize(("told_s", "carried_s"), [(0.0, 0.1), (-1.0, 0.1), (0.05, 0.1), (2.0, 2.0), (math.nan, 3.0)])
+def test_a_timeout_that_no_autopilot_flies_is_the_one_that_it_takes(told_s: float, carried_s: float) -> None:
+    shaping = ArduPilotDriver().shaping({"GUID_TIMEOUT": told_s})
+    assert shaping is not None
+    assert shaping.carried_s == carried_s
