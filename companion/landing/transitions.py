@@ -98,8 +98,11 @@ def _enter(memory: StepMemory, event: Event, cause: Cause, situation: Situation,
     memory = replace(memory, progress=_progress_after(memory.progress, event, cause, situation.monotonic_ns, config))
     memory = begin_phase_of_sortie(memory, before, situation, config)
     model, places = memory.model, memory.places
-    if phase is Phase.WAITING and event is Event.START:  # it waits where it hovers
-        return replace(memory, places=replace(places, waiting_point_enu_m=places.anchor_enu_m))
+    anchor = places.anchor_enu_m
+    if phase is Phase.WAITING and event is Event.START and anchor is not None:
+        # It waits where it hovers, unless that is too low.
+        waiting_point = anchor + np.array([0.0, 0.0, _climb_m(float(anchor[2]), situation, config)])
+        return replace(memory, places=replace(places, waiting_point_enu_m=waiting_point))
     if phase in (Phase.TAKEOFF, Phase.ON_DECK):
         return _begin_flight(memory, situation, config)
     if phase not in FLYING_PHASES:

@@ -105,7 +105,8 @@ def _find_taken_control(phase: Phase, control: ControlMemory, s: Situation) -> D
     if not s.autopilot.in_control:
         restarted = s.autopilot.restarted
         return Event.PILOT_TOOK_OVER, Cause(Reason.AUTOPILOT_RESTARTED if restarted else Reason.MODE_CHANGED)
-    if control.was_armed and not s.autopilot.armed and phase is not Phase.ON_DECK:  # there it times out by itself
+    # On a deck, too: a person did it, or the autopilot's time was over, and nobody expects the motors to start again.
+    if control.was_armed and not s.autopilot.armed:
         return Event.PILOT_TOOK_OVER, Cause(Reason.DISARMED)
     return None
 

@@ -138,3 +138,17 @@ def test_drone_that_holds_under_control_waits_where_it_hovers_after_a_start() ->
     flight.step(Command.HOLD)
     flight.step(Command.START)
     assert flight.history[-3:] == [Phase.WAITING, Phase.HOLD, Phase.WAITING]
+
+
+def test_drone_that_holds_too_low_climbs_to_wait_after_a_start() -> None:
+    flight = Flight(vehicle=KnownVehicle((-60.0, 0.4, PAD_HEIGHT_M), (0.0, 0.0, 0.0)))
+    flight.start_and_reach(Phase.TAKEOFF)
+    flight.run(1.0)
+    flight.step(Command.HOLD)
+    assert flight.own is not None
+    held_m = float(flight.own.position_enu_m[2])
+    flight.step(Command.START)
+    flight.run(8.0)
+    assert flight.phase is Phase.WAITING
+    assert flight.own.position_enu_m[2] > held_m + 1.0
+    assert flight.own.position_enu_m[2] == pytest.approx(CONFIG.takeoff.waiting_height_m, abs=0.3)

@@ -1,5 +1,6 @@
 """Whether the drone stands on the vehicle, and what its lift-off tells about the receivers' frames."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
@@ -99,3 +100,25 @@ def test_drone_rises_where_it_stood_however_far_off_the_pad_was_taken_to_be() ->
     assert flight.own.position_enu_m[:2] == pytest.approx(stood_enu_m[:2], abs=0.05)
     flight.run(6.0)
     assert flight.own.position_enu_m[:2] == pytest.approx(flight.vehicle.at(flight.t_ns)[:2], abs=0.05)
+
+
+def test_drone_that_was_disarmed_on_the_deck_starts_its_motors_by_a_new_order_only() -> None:
+    flight = on_deck()
+
+    def wait(steps: int, tilt_rad: float) -> None:
+        for _ in range(steps):
+            assert flight.own is not None
+            rolled = (math.cos(0.5 * tilt_rad), math.sin(0.5 * tilt_rad), 0.0, 0.0)
+            flight.own = replace(flight.own, orientation_wxyz=rolled)
+            flight.step()
+
+    flight.step(Command.LAUNCH)
+    while not flight.view.armed:
+        flight.step()
+    wait(20, tilt_rad=0.2)  # the deck is restless again
+    assert flight.history[-1:] == [Phase.ON_DECK]
+    flight.view = replace(flight.view, armed=False)  # a switch, a ground station, or the autopilot's own time-out
+    wait(20, tilt_rad=0.2)
+    wait(200, tilt_rad=0.0)
+    assert not flight.view.armed
+    assert flight.history[-2:] == [Phase.ON_DECK, Phase.PILOT]
