@@ -1,5 +1,6 @@
 """The `scenarios` command."""
 
+import signal
 import sys
 from pathlib import Path
 from typing import Annotated, Any
@@ -195,7 +196,8 @@ for command in (
 
 
 def main() -> None:
-    """Run the command."""
+    """Run the command; SIGTERM ends it as Ctrl-C does, with all that it has started."""
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
     sys.exit(run_app("scenarios", app))
 
 

@@ -3,7 +3,6 @@
 import signal
 import sys
 from pathlib import Path
-from types import FrameType
 from typing import Annotated, Any
 
 import typer
@@ -94,7 +93,7 @@ def sim_autopilot(
 
     devices = tuple(link.device for link in settings.links)
     options = RunOptions(devices=devices, speed=speed, keys=names.keys(), zenoh=endpoints.options())
-    signal.signal(signal.SIGTERM, _interrupt)
+    signal.signal(signal.SIGTERM, signal.default_int_handler)  # until the loop has its own, it ends as on Ctrl-C
     run(settings, autopilot, options)
     return EXIT_OK
 
@@ -108,11 +107,6 @@ def _datum(datum: tuple[float, float, float] | None) -> dict[str, float]:
     if datum is None:
         return {}
     return dict(zip(("latitude_deg", "longitude_deg", "altitude_m"), datum, strict=True))
-
-
-def _interrupt(_signal: int, _frame: FrameType | None) -> None:
-    """End on SIGTERM as on Ctrl-C before the first step, with everything closed."""
-    raise KeyboardInterrupt
 
 
 def main() -> None:

@@ -71,10 +71,15 @@ def update_gusts(gusts: Gusts, reported_ns: int, deviation: Array, path_m_s2: Ar
     push, expected_m_s2 = deviation[_PUSH].copy(), gusts.expected_m_s2
     passed_s = _BREAK_S if gusts.seen_ns is None else (reported_ns - gusts.seen_ns) * 1e-9
     if passed_s >= _BREAK_S or expected_m_s2 is None:
-        # How the path went before is unknown, so its acceleration is taken to have begun just now.
-        smoothed, doubt = np.zeros(2), _doubt_m2_s4(path_m_s2)
-        gusts = replace(gusts, smoothed_m_s2=smoothed, doubt_m2_s4=doubt)
-        return replace(gusts, seen_ns=reported_ns, expected_m_s2=push, since_s=0.0)
+        return replace(
+            gusts,
+            seen_ns=reported_ns,
+            expected_m_s2=push,
+            since_s=0.0,
+            # How the path went before is unknown, so its acceleration is taken to have begun just now.
+            smoothed_m_s2=np.zeros(2),
+            doubt_m2_s4=_doubt_m2_s4(path_m_s2),
+        )
     forgets_hz, since_s = response.cascade.forgets_hz, gusts.since_s + passed_s
     expected_m_s2 = math.exp(-passed_s * forgets_hz) * expected_m_s2 - DRAG_PER_S * passed_s * path_m_s2
     smoothed = gusts.smoothed_m_s2 + (path_m_s2 - gusts.smoothed_m_s2) * (passed_s / _SETTLES_S)

@@ -101,7 +101,7 @@ def _enter(memory: StepMemory, event: Event, cause: Cause, situation: Situation,
     anchor = places.anchor_enu_m
     if phase is Phase.WAITING and event is Event.START and anchor is not None:
         # It waits where it hovers, unless that is too low.
-        waiting_point = anchor + np.array([0.0, 0.0, _climb_m(float(anchor[2]), situation, config)])
+        waiting_point = anchor + np.array([0.0, 0.0, _too_low_m(float(anchor[2]), situation, config)])
         return replace(memory, places=replace(places, waiting_point_enu_m=waiting_point))
     if phase in (Phase.TAKEOFF, Phase.ON_DECK):
         return _begin_flight(memory, situation, config)
@@ -161,14 +161,17 @@ def _escape(model: ModelMemory, situation: Situation, config: CompanionConfig) -
 
 
 def _climb_m(height_enu_m: float, situation: Situation, config: CompanionConfig) -> float:
-    """Return how far the waiting point is above a drone at this height in W: one that flies may wait higher already.
+    """Return how far the waiting point is above a drone at this height in W: one that flies may wait higher already."""
+    flies = situation.autopilot.armed and situation.autopilot.landed is False
+    return _too_low_m(height_enu_m, situation, config) if flies else config.takeoff.waiting_height_m
+
+
+def _too_low_m(height_enu_m: float, situation: Situation, config: CompanionConfig) -> float:
+    """Return how far below the height of waiting a drone at this height in W is, 0 where it is not.
 
     Where no range finder has told the ground, it is taken to be where the autopilot's local frame began.
     """
-    wait_m = config.takeoff.waiting_height_m
-    if not (situation.autopilot.armed and situation.autopilot.landed is False):
-        return wait_m
-    ground = situation.below.ground_enu_m
+    wait_m, ground = config.takeoff.waiting_height_m, situation.below.ground_enu_m
     ground_m = 0.0 if ground is None else float(ground[2])
     return min(max(ground_m + situation.feet_offset_m + wait_m - height_enu_m, 0.0), wait_m)
 

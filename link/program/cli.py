@@ -126,11 +126,19 @@ def run_app(name: str, app: App, args: Sequence[str] | None = None) -> int:
     except OSError as error:
         if error.errno != errno.ENOSPC:
             raise
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # what is left of the output ends there
+        _end_output()
         return _fail(name, "no space is left where it writes to: free some, or write elsewhere")
     except (KeyboardInterrupt, typer.Abort):
         return EXIT_INTERRUPTED
     return result if isinstance(result, int) else EXIT_OK
+
+
+def _end_output() -> None:
+    """Write what is left of the output; where that finds no space, either, the interpreter is not to try it again."""
+    try:
+        sys.stdout.flush()
+    except OSError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def _path_of(command: Any, name: str, arguments: Sequence[str]) -> str:

@@ -1,7 +1,6 @@
 """The commands about campaigns: `campaign`, `table` and `compare`."""
 
 import json
-import signal
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -185,7 +184,6 @@ def _fly(folder: Path, plan: "Plan", where: "Where", *, as_json: bool) -> int:
     from scenarios.campaigns.progress import CampaignProgress
 
     _note(f"campaign in {folder}")
-    signal.signal(signal.SIGTERM, signal.default_int_handler)  # ends it as Ctrl-C does
     try:
         with CampaignProgress() as progress:
             rows = fly_campaign(folder, plan, where, progress.update)

@@ -111,10 +111,10 @@ def forecast_contact(
         pushes=numbers.pushes,
     )
     error_std_m_s = math.sqrt(float(np.mean(np.square(vehicle[:, 1]))))
-    relearnt_hz = relearns_hz(then)
+    drone = follower_of(memory, situation, inputs, config, relearns_hz=relearns_hz(then), error_std_m_s=error_std_m_s)
     descent = Descent(
         course=course,
-        drone=follower_of(memory, situation, inputs, config, relearns_hz=relearnt_hz, error_std_m_s=error_std_m_s),
+        drone=drone,
         rules=rules_of(memory, relative, inputs, config),
     )
     ends = roll_out(samples, descent, age_s)

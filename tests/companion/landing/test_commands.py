@@ -140,6 +140,20 @@ def test_drone_that_holds_under_control_waits_where_it_hovers_after_a_start() ->
     assert flight.history[-3:] == [Phase.WAITING, Phase.HOLD, Phase.WAITING]
 
 
+def test_drone_whose_autopilot_does_not_say_that_it_flies_climbs_no_higher_by_each_start() -> None:
+    flight = Flight(vehicle=KnownVehicle((-60.0, 0.4, PAD_HEIGHT_M), (0.0, 0.0, 0.0)))
+    flight.start_and_reach(Phase.WAITING)
+    flight.run(3.0)
+    assert flight.own is not None
+    waits_m = float(flight.own.position_enu_m[2])
+    for _ in range(2):
+        flight.step(Command.HOLD)
+        flight.view = replace(flight.view, landed=None)
+        flight.step(Command.START)
+        flight.run(4.0)
+    assert flight.own.position_enu_m[2] == pytest.approx(waits_m, abs=0.2)
+
+
 def test_drone_that_holds_too_low_climbs_to_wait_after_a_start() -> None:
     flight = Flight(vehicle=KnownVehicle((-60.0, 0.4, PAD_HEIGHT_M), (0.0, 0.0, 0.0)))
     flight.start_and_reach(Phase.TAKEOFF)
