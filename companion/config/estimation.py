@@ -30,7 +30,7 @@ class BufferConfig(StrictModel):
     recover_after_s: Positive = 0.15  # of nothing but rejections of one quantity; the second fix at 10 Hz
     # What a filter knows of a vehicle that has been silent for so long is worth nothing, and costs more in every step.
     forget_after_s: Annotated[float, Field(gt=0.0, le=600.0)] = 60.0
-    late_in_a_row_max: Annotated[int, Field(ge=1, le=10_000)] = 20  # then the clock is taken to have jumped
+    late_in_a_row_max: Annotated[int, Field(ge=1, le=10_000)] = 20  # places; then the clock is taken to have jumped
 
 
 class LkfConfig(StrictModel):

@@ -38,7 +38,14 @@ class Entry(Struct, Generic[S], frozen=True, kw_only=True, eq=False):
 
 
 class DelayBuffer(Struct, Generic[S], frozen=True, kw_only=True, eq=False):
-    """The filter before the oldest kept measurement, the kept ones in order of time, and how many came too late."""
+    """The filter before the oldest kept measurement, and the kept ones in order of time.
+
+    Attributes:
+        base: the filter before the oldest kept one.
+        entries: those that are kept.
+        late: how many came too late.
+        late_in_a_row: how many places did since anything came in time.
+    """
 
     base: Snapshot[S]
     entries: tuple[Entry[S], ...]
@@ -94,8 +101,11 @@ def _empty(t_ns: int) -> DelayBuffer[S]:
 def _all_late(
     model: FilterModel[S], config: BufferConfig, buffer: DelayBuffer[S], measurements: Sequence[Measurement]
 ) -> DelayBuffer[S] | None:
-    """Drop and count; a long row of nothing but late data means that an earlier stamp lay in the future."""
-    in_a_row = buffer.late_in_a_row + len(measurements)
+    """Drop and count; where all comes late, places too, and for long, an earlier stamp lay in the future.
+
+    A sensor whose stamps alone are old, such as an IMU at 100 Hz between fixes, says nothing of the others.
+    """
+    in_a_row = buffer.late_in_a_row + sum(one.quantity is model.placed_by for one in measurements)
     late = buffer.late + len(measurements)
     if in_a_row <= config.late_in_a_row_max:
         return replace(buffer, late=late, late_in_a_row=in_a_row)
