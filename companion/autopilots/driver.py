@@ -8,21 +8,11 @@ from typing import Protocol
 
 from msgspec import Struct
 
+from companion.autopilots.frame_moves import NO_MOVES, FrameMoves
 from companion.autopilots.response import Cascade, Shaping
 from companion.core.data import FlightLimits, RangeReading, Setpoint
 from link.frames.geodesy import LocalFrame, Projection
 from link.mavlink.dialect import Message, mavlink
-from link.messages import Vector3
-
-
-class FrameMoves(Struct, frozen=True, kw_only=True):
-    """How the local frame has moved since it was first set: what is known in it holds until this changes."""
-
-    origin_count: int = 0  # how often the origin was set or moved
-    shift_enu_m: Vector3 = (0.0, 0.0, 0.0)  # sum of the jumps of the drone's own position
-
-
-NO_MOVES = FrameMoves()
 
 
 class Receiver(Struct, frozen=True, kw_only=True):

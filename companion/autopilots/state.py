@@ -7,18 +7,21 @@ from types import MappingProxyType
 from msgspec import Struct, field
 
 from companion.autopilots.driver import NO_AUTOPILOT, AutopilotView, Driver
+from companion.autopilots.frame_moves import after_origin
 from companion.autopilots.own_reports import (
     HISTORY_NS,
-    above_ellipsoid,
     carry,
-    geoid_height_m,
     is_plausible,
-    is_same,
-    origin_above_sea,
     velocity_bias,
     with_report,
-    with_sensor,
     without_bias,
+)
+from companion.autopilots.sensor_reports import (
+    above_ellipsoid,
+    geoid_height_m,
+    is_same,
+    origin_above_sea,
+    with_sensor,
 )
 from companion.core.data import OwnState
 from link.frames.geodesy import Datum, LocalFrame, Projection
@@ -152,14 +155,12 @@ def _position(state: AutopilotState, message: Message, clock: ClockMap) -> Autop
 
 def _add_report(state: AutopilotState, own: OwnState) -> AutopilotState:
     """Add the drone's newest report to the history; with one that flying cannot explain the local frame has moved."""
-    history, jump = with_report(state.history, own)
+    history, moves = with_report(state.history, own, state.view.frame_moves)
     state = replace(state, history=history)
-    if jump is None:
+    if moves is state.view.frame_moves:
         return state
-    moves, (dx, dy, dz), seen = state.view.frame_moves, jump, state.view.range_down
-    x, y, z = moves.shift_enu_m
+    seen = state.view.range_down
     seen = None if seen is None else replace(seen, own=None)
-    moves = replace(moves, shift_enu_m=(x + dx, y + dy, z + dz))
     return replace(state, view=replace(state.view, frame_moves=moves, range_down=seen))
 
 
@@ -230,7 +231,7 @@ def _hear_origin(state: AutopilotState, told: Datum | None) -> AutopilotState:
 
 
 def _place_origin(state: AutopilotState, projection: Projection) -> AutopilotState:
-    """Put the origin above the ellipsoid; a moved one is counted, since the local frame has then moved."""
+    """Put the origin above the ellipsoid; with another one the local frame has moved."""
     if state.origin_msl is None:
         return state
     origin = above_ellipsoid(state.origin_msl, state.geoid_height_m)
@@ -238,11 +239,8 @@ def _place_origin(state: AutopilotState, projection: Projection) -> AutopilotSta
     receiver = replace(state.view.receiver, knows_geoid=state.geoid_height_m is not None)
     if known is not None and known.projection is projection and is_same(origin, known.origin):
         return replace(state, view=replace(state.view, receiver=receiver))
-    # The newest report stays, for the next one tells by how much the drone's own position jumps with the origin.
-    view = replace(
-        state.view,
-        frame=LocalFrame(origin=origin, projection=projection),
-        receiver=receiver,
-        frame_moves=replace(moves, origin_count=moves.origin_count + 1),
-    )
+    frame = LocalFrame(origin=origin, projection=projection)
+    moves = after_origin(moves, known, frame)
+    view = replace(state.view, frame=frame, receiver=receiver, frame_moves=moves)
+    # The newest report stays, for the next one tells by how much the drone's own place steps with the origin.
     return replace(state, view=view, history=state.history[-1:])

@@ -21,6 +21,8 @@ class Quantity(Enum):
 
     __hash__ = object.__hash__  # by identity, as members compare: a name is hashed again at every look-up
 
+    # How W has moved: by how much what is seen from the drone is elsewhere in it, and what stands on the ground, m (6).
+    FRAME_STEP = "frame_step"
     POSITION = "position"  # of the antenna in W, m (3)
     VELOCITY = "velocity"  # of the antenna in W, m/s (3)
     HEADING = "heading"  # yaw of V about W's z, rad (1)

@@ -18,7 +18,7 @@ says that they have one frame, any offset may be true, and the sightings alone p
 contradict each other can be told from right ones. A camera that looks at a pad sees it many times a second, so that a
 few sightings which nothing follows place nothing. A pad that they have confirmed stays where it is on the vehicle: if
 all of them show it elsewhere from some moment on, the detector has taken something else for it. A step of the drone's
-own frame would look the same, but that begins the estimate anew, and the count with it.
+own frame would look the same, but the estimate steps with that.
 """
 
 import math
@@ -165,13 +165,16 @@ def do_sightings_disagree(s: Situation, _: CompanionConfig) -> bool:
 def is_seen_elsewhere(s: Situation, c: CompanionConfig) -> bool:
     """Return whether the pad is seen where neither the receivers nor what they promise allow it to be.
 
-    A drone whose own place has jumped has left the frame that its receiver had.
+    A drone whose own place has stepped, but for what its origin has moved by, may have left the frame that its receiver
+    had, or come back to it.
     """
     pad = s.pad
     off_m = None if pad is None else pad.frame_offset.distance_m
-    if pad is None or off_m is None or not pad.has_one_frame or any(s.autopilot.frame_moves.shift_enu_m):
+    if pad is None or off_m is None or not pad.has_one_frame:
         return False
-    return off_m > _offset_max_m(pad, s.vehicle.fix_std_m, c)
+    (east_m, north_m, _), moves = s.autopilot.frame_moves.shift_enu_m, s.autopilot.frame_moves
+    stepped_m = math.hypot(east_m - moves.origin_shift_enu_m[0], north_m - moves.origin_shift_enu_m[1])
+    return off_m > _offset_max_m(pad, s.vehicle.fix_std_m, c) + stepped_m
 
 
 def _offset_max_m(pad: PadPath, fix_std_m: float | None, c: CompanionConfig) -> float:

@@ -41,6 +41,7 @@ def _warm_up(kind: EstimatorKind) -> None:
     """Do once all that an estimator can be asked."""
     estimator = _make(EstimatorConfig(), Deck(antenna_to_pad_m=(1.0, 0.0, 0.0), half_width_m=10.0), kind)
     sizes = {Quantity.HEADING: 1, Quantity.YAW_RATE: 1, Quantity.ACCELERATION: 1, Quantity.TILT: 4, Quantity.SURFACE: 4}
+    sizes[Quantity.FRAME_STEP] = 6
     memory: EstimatorMemory | None = None
     for i, quantity in enumerate((*Quantity, *Quantity)):
         value = np.full(sizes.get(quantity, 3), 0.1)

@@ -43,7 +43,7 @@ S = TypeVar("S")
 
 QUANTITIES = tuple(Quantity)
 RANK = {quantity: rank for rank, quantity in enumerate(QUANTITIES)}
-OF_DRONE = frozenset({Quantity.SURFACE})
+OF_DRONE = frozenset({Quantity.FRAME_STEP, Quantity.SURFACE})
 """What only the drone tells. It is not counted as fused or gated, for that is of the vehicle's data, and no filter
 recovers on it: a range finder may see something else, or be stuck."""
 _NEVER: tuple[int | None, ...] = (None,) * len(QUANTITIES)
@@ -80,6 +80,9 @@ class FilterModel(Protocol[S]):
 
     def update(self, state: S, measurement: Measurement) -> Update[S] | None:
         """Return the state after `measurement`, or None when this filter has no use for it."""
+
+    def move_frame(self, state: S, step: Measurement) -> S:
+        """Return a state in the drone's frame after a `Quantity.FRAME_STEP`."""
 
     def recover(self, state: S, measurement: Measurement) -> S:
         """Return a state open to `measurement`, after many like it were rejected."""
@@ -143,6 +146,9 @@ def step(
     state, told_ns = snapshot.state, snapshot.told_ns if is_of_drone else t_ns
     if t_ns > snapshot.t_ns:
         state = model.predict(state, (t_ns - snapshot.t_ns) * 1e-9)
+    if measurement.quantity is Quantity.FRAME_STEP:
+        state = model.move_frame(state, measurement)
+        return Snapshot(t_ns=t_ns, told_ns=told_ns, state=state, tally=snapshot.tally), None
     update = model.update(state, measurement)
     if update is None:
         return Snapshot(t_ns=t_ns, told_ns=told_ns, state=state, tally=snapshot.tally), None

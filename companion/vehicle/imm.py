@@ -23,7 +23,7 @@ from companion.vehicle import imm_mixing as mixing
 from companion.vehicle import steady_driving
 from companion.vehicle.deck_motion import first_motion, learn, passed
 from companion.vehicle.filter_step import Update, wrapped
-from companion.vehicle.imm_frames import own_rate_opened_m2_s2, ranged_pad, wandering
+from companion.vehicle.imm_frames import moved_frame, own_rate_opened_m2_s2, ranged_pad, wandering
 from companion.vehicle.imm_kernels import CURVATURE, HEADING
 from companion.vehicle.imm_mixing import Modes
 from companion.vehicle.imm_numbers import Deck, Numbers, noises_with, numbers_of, swing_of
@@ -136,6 +136,10 @@ class ImmModel:
         )
         return Update(state=updated, nis=nis, gate_nis=gate_nis, dof=len(measurement.value))
 
+    def move_frame(self, state: ImmState, step: Measurement) -> ImmState:
+        """Return the state after W has moved under what is seen from the drone."""
+        return moved_frame(state, step, self.config.receivers, self.placed_by)
+
     def recover(self, state: ImmState, measurement: Measurement) -> ImmState:
         """Return the state open to `measurement`."""
         recovered = recover(state, measurement, self.config, self.numbers, self.placed_by)
@@ -233,14 +237,7 @@ class ImmModel:
         What was seen for a second only may as well be a curve that nobody drives, and a vehicle that nothing more is
         heard of would be sought along it. For a forecast only: fused once for each, it would be believed too much.
         """
-        means, _, weights = state.modes
-        speed_m_s = max(math.hypot(*(weights @ means)[2:4].tolist()), self.config.heading.course_speed_min_m_s)
-        straight = Measurement(
-            t_ns=t_ns,
-            quantity=Quantity.YAW_RATE,
-            value=np.zeros(1),
-            covariance=np.array([[(self.config.heading.turning_std_m_s2 / speed_m_s) ** 2]]),
-        )
+        straight = steady_driving.driven_straight(state.modes, t_ns, self.config.heading)
         update = self.update(state, straight)
         return state if update is None else update.state
 

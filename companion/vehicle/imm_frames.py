@@ -5,13 +5,14 @@ import math
 import numpy as np
 
 from companion.config.estimation import ReceiversConfig
-from companion.core.data import Array, Measurement
+from companion.core.data import Array, Measurement, Quantity
 from companion.vehicle.imm_kernels import HEADING
 from companion.vehicle.imm_numbers import Deck
 from companion.vehicle.imm_sensors import PAD, observe
-from companion.vehicle.imm_state import OFFSET, ImmState
+from companion.vehicle.imm_state import OFFSET, PLACE, ImmState, open_place_and_offset, open_states, seen_axes
 from companion.vehicle.imm_swing import PITCH, ROLL
 from companion.vehicle.surface import pad_height_seen
+from link.records import replace
 
 
 def wandering(state: ImmState, receivers: ReceiversConfig) -> tuple[float, float, float]:
@@ -24,6 +25,33 @@ def wandering(state: ImmState, receivers: ReceiversConfig) -> tuple[float, float
     bias_m2_s = 2.0 * state.fix_bias_variance_m2 / receivers.fix_bias_time_s
     receiver_m2_s = receivers.frame_offset_walk_m2_s + bias_m2_s + _fine_walk_m2_s(state, receivers)
     return receiver_m2_s, receivers.own_walk_share * bias_m2_s, _own_rate_m2_s3(state, receivers)
+
+
+def moved_frame(state: ImmState, step: Measurement, receivers: ReceiversConfig, placed_by: Quantity) -> ImmState:
+    """Return the state after W has moved.
+
+    On an axis on which the fixes alone tell the place, the drone's own step is of an offset that nobody knows: there it
+    may as well be that the drone's place was wrong before, and the vehicle stays where its fixes have it.
+
+    Args:
+        state: before.
+        step: a `Quantity.FRAME_STEP`.
+        receivers: of the vehicle and the drone.
+        placed_by: what the filter starts on; what sightings alone place has no offset.
+    """
+    seen_m, told_m = step.value[:3], step.value[3:]
+    if placed_by is Quantity.PAD:
+        means, covariances, weights = open_states(state.modes, PLACE, step.covariance.diagonal()[:3])
+        means = means.copy()
+        means[:, PLACE] += seen_m
+        return replace(state, modes=(means, covariances, weights))
+    means, covariances, weights = state.modes
+    seen = seen_axes(state, receivers)
+    means = means.copy()
+    means[:, PLACE] += np.where(seen, seen_m, told_m)
+    means[:, OFFSET] += np.where(seen, seen_m - told_m, 0.0)
+    opened = open_place_and_offset(covariances, step.covariance[:3, :3] * np.outer(seen, seen))
+    return replace(state, modes=(means, opened, weights))
 
 
 def ranged_pad(

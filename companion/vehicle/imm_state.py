@@ -173,11 +173,11 @@ def has_settled(state: ImmState, config: ImmConfig) -> bool:
     return is_heading_known(state, config) and speed_variance < _SETTLED_STD_M_S**2
 
 
-def is_placed_by_sightings(state: ImmState, receivers: ReceiversConfig) -> bool:
-    """Return whether the place is known better than the fixes alone could tell it in the drone's frame."""
+def seen_axes(state: ImmState, receivers: ReceiversConfig) -> NDArray[np.bool_]:
+    """Return on which axes of W (3,) the place is known better than the fixes alone could tell it."""
     _, covariances, weights = state.modes
-    variance = float(weights @ covariances[:, 0, 0])
-    return variance < 0.25 * (receivers.frame_offset_std_m**2 + state.fix_bias_variance_m2)
+    variances = weights @ covariances[:, PLACE, PLACE]
+    return np.asarray(variances < 0.25 * (receivers.frame_offset_std_m**2 + state.fix_bias_variance_m2))
 
 
 _TOLD_BY = {  # the states that a quantity tells
@@ -211,14 +211,14 @@ def recover(
                 return _restart(state, measurement, config, numbers)
             return _move_frame(state, measurement, config.receivers, numbers)
         case Quantity.POSITION:
-            if is_placed_by_sightings(state, config.receivers):
+            if seen_axes(state, config.receivers)[:2].all():
                 step_m = _step_size_m(state, measurement, config.receivers, numbers)
                 return replace(state, modes=open_states(state.modes, OFFSET, np.full(3, step_m**2)))
             return _restart(state, measurement, config, numbers)
         case Quantity.VELOCITY | Quantity.HEADING | Quantity.YAW_RATE | Quantity.ACCELERATION | Quantity.TILT:
             told = _TOLD_BY[measurement.quantity]
             return replace(state, modes=open_states(state.modes, told, numbers.prior_variances[told]))
-        case Quantity.SURFACE:
+        case Quantity.SURFACE | Quantity.FRAME_STEP:
             return state
         case _:
             assert_never(measurement.quantity)

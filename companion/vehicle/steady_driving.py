@@ -11,9 +11,11 @@ has begun in it. Nobody is taken to be steadier than ordinary: who drives straig
 import math
 from typing import NamedTuple
 
+import numpy as np
 from msgspec import Struct
 
-from companion.config.estimation import ImmConfig
+from companion.config.estimation import HeadingConfig, ImmConfig
+from companion.core.data import Measurement, Quantity
 from companion.vehicle.imm_mixing import Modes
 from companion.vehicle.imm_numbers import BRAKING, EASING, STEADY, TURNING, Bounds
 from link.records import replace
@@ -152,4 +154,16 @@ def _with_change(watched: Watched, before: Known, now: Known, pair: tuple[float,
     square = ((now.mean - before.mean) ** 2 + now.variance - before.variance) * unit_m_s2**2
     return Watched(
         squares_m2_s4=max(watched.squares_m2_s4 + counts * square, 0.0), seen_s=watched.seen_s + counts * lag_s
+    )
+
+
+def driven_straight(modes: Modes, t_ns: int, heading: HeadingConfig) -> Measurement:
+    """Return what is known of any driver as a yaw rate that is told: how hard he turns at this speed."""
+    means, _, weights = modes
+    speed_m_s = max(math.hypot(*(weights @ means)[2:4].tolist()), heading.course_speed_min_m_s)
+    return Measurement(
+        t_ns=t_ns,
+        quantity=Quantity.YAW_RATE,
+        value=np.zeros(1),
+        covariance=np.array([[(heading.turning_std_m_s2 / speed_m_s) ** 2]]),
     )

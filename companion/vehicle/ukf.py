@@ -105,6 +105,10 @@ class UkfModel:
         sees = SEES.get(measurement.quantity)
         return None if sees is None else self._update_car(state, measurement)
 
+    def move_frame(self, state: UkfState, step: Measurement) -> UkfState:  # noqa: ARG002
+        """Return the same state: it is in the frame of the fixes, which alone it knows."""
+        return state
+
     def recover(self, state: UkfState, measurement: Measurement) -> UkfState:
         """Start again: at the new position, or where it is with everything else open."""
         if measurement.quantity is Quantity.POSITION:

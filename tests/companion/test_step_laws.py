@@ -7,7 +7,8 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from companion.autopilots.driver import AutopilotView, FrameMoves
+from companion.autopilots.driver import AutopilotView
+from companion.autopilots.frame_moves import FrameMoves
 from companion.core.data import Array, Forecast
 from companion.landing.state.memory import StepMemory
 from companion.situation.phases import Phase

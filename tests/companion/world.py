@@ -9,7 +9,8 @@ from typing import Any, cast
 
 import numpy as np
 
-from companion.autopilots.driver import AutopilotView, Driver, FrameMoves, Receiver
+from companion.autopilots.driver import AutopilotView, Driver, Receiver
+from companion.autopilots.frame_moves import FrameMoves
 from companion.autopilots.px4 import Px4Driver
 from companion.autopilots.response import Cascade, ResponseModel
 from companion.config.companion import CompanionConfig

@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from companion.autopilots.driver import FrameMoves
+from companion.autopilots.frame_moves import FrameMoves
 from companion.landing.state.memory import Places, StepMemory
 from link.messages import BodyTruth
 from link.records import replace

@@ -10,7 +10,8 @@ from types import MappingProxyType
 import numpy as np
 from msgspec import Struct, field
 
-from companion.autopilots.driver import NO_MOVES, AutopilotView, DriverMemory, FrameMoves
+from companion.autopilots.driver import AutopilotView, DriverMemory
+from companion.autopilots.frame_moves import NO_MOVES, FrameMoves
 from companion.core.data import Array
 from companion.core.reasons import Cause, Reason
 from companion.forecast.drivers import Drivers
@@ -26,7 +27,7 @@ from companion.sortie.memory import SortieMemory, move_sortie
 from companion.vehicle.estimator import EstimatorMemory
 from companion.vehicle.hindsight import Hindsight
 from companion.vehicle.range_watch import RangeWatch
-from link.messages import ContactForecast
+from link.messages import ContactForecast, Vector3
 from link.records import replace
 
 Held = Mapping[Reason, int]
@@ -81,6 +82,7 @@ class VehicleMemory(Struct, frozen=True, kw_only=True, eq=False):
         utc_ahead_ns: of the monotonic clock, when its stamps were last compared with UTC.
         ranges: the last readings of the drone's range finder.
         is_road_elsewhere: it is said to be far above or below the ground.
+        frame_moves: of the frame that the estimate and the ranges are in.
     """
 
     estimator: EstimatorMemory | None = None
@@ -93,6 +95,7 @@ class VehicleMemory(Struct, frozen=True, kw_only=True, eq=False):
     utc_ahead_ns: int = 0
     ranges: RangeWatch = field(default_factory=RangeWatch)
     is_road_elsewhere: bool = False
+    frame_moves: FrameMoves = NO_MOVES
 
 
 class ModelMemory(Struct, frozen=True, kw_only=True, eq=False):
@@ -138,7 +141,7 @@ class Places(Struct, frozen=True, kw_only=True, eq=False):
         waiting_point_enu_m: (3,) where the drone waits for the vehicle.
         anchor_enu_m: (3,) where a hover phase stays.
         ground_enu_m: (3,) of the ground.
-        frame_moves: of the frame that they and the estimate are in.
+        frame_moves: of the frame that they are in.
     """
 
     waiting_point_enu_m: Array | None = None
@@ -182,10 +185,9 @@ class StepMemory(Struct, frozen=True, kw_only=True, eq=False):
 
 
 def to_present_frame(memory: StepMemory, view: AutopilotView) -> StepMemory:
-    """Return the memory in the frame that the autopilot's positions are in now.
+    """Return the memory, but for the vehicle's, in the frame that the autopilot's positions are in now.
 
-    A moved origin or a jump of the drone's own position makes the vehicle's estimate restart. With a jump, all
-    places that the companion flies to move along, so that the drone stays where it is.
+    When the frame steps, all places that the companion flies to move along, so that the drone stays where it is.
 
     Args:
         memory: in the frame of the last step.
@@ -194,12 +196,10 @@ def to_present_frame(memory: StepMemory, view: AutopilotView) -> StepMemory:
     places = memory.places
     if view.frame_moves == places.frame_moves:
         return memory
-    shift_enu_m, before_enu_m = view.frame_moves.shift_enu_m, places.frame_moves.shift_enu_m
-    vehicle = replace(memory.vehicle, estimator=None, ranges=RangeWatch())
+    by_enu_m = between(places.frame_moves.shift_enu_m, view.frame_moves.shift_enu_m)
     places = replace(places, frame_moves=view.frame_moves)
-    if shift_enu_m == before_enu_m:
-        return replace(memory, vehicle=vehicle, places=places)
-    by_enu_m = np.array(shift_enu_m) - np.array(before_enu_m)
+    if not by_enu_m.any():
+        return replace(memory, places=places)
     places = replace(
         places,
         waiting_point_enu_m=_move(places.waiting_point_enu_m, by_enu_m),
@@ -207,7 +207,12 @@ def to_present_frame(memory: StepMemory, view: AutopilotView) -> StepMemory:
         ground_enu_m=_move(places.ground_enu_m, by_enu_m),
     )
     sortie = move_sortie(memory.sortie, by_enu_m)
-    return replace(memory, vehicle=vehicle, places=places, sortie=sortie, model=_move_model(memory.model, by_enu_m))
+    return replace(memory, places=places, sortie=sortie, model=_move_model(memory.model, by_enu_m))
+
+
+def between(before_enu_m: Vector3, now_enu_m: Vector3) -> Array:
+    """Return the move (3,) from the one to the other."""
+    return np.subtract(now_enu_m, before_enu_m, dtype=np.float64)
 
 
 def _move_model(model: ModelMemory, by_enu_m: Array) -> ModelMemory:

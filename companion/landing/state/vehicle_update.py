@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from companion.core.data import Forecast, Measurement, Quantity
+from companion.core.data import Array, Forecast, Measurement, Quantity
 from companion.integrity.sightings import (
     SightingWatch,
     are_frames_one,
@@ -20,7 +20,7 @@ from companion.integrity.vehicle_data import (
     update_fix_stamps,
     without_contradicted_heading,
 )
-from companion.landing.state.memory import VehicleMemory
+from companion.landing.state.memory import VehicleMemory, between
 from companion.landing.state.step_data import StepInputs, System
 from companion.landing.steering.targets import HORIZON_OFFSETS_S
 from companion.planning.guidance import are_finite
@@ -38,7 +38,7 @@ _PRESENT_OFFSETS_S = HORIZON_OFFSETS_S[:2]  # a second point tells how the lever
 
 def update_vehicle(vehicle: VehicleMemory, inputs: StepInputs, system: System) -> VehicleMemory:
     """Fuse what the vehicle sent, and compare it with what was known before."""
-    vehicle = _in_present_utc(vehicle, inputs)
+    vehicle = _in_present_frame(_in_present_utc(vehicle, inputs), inputs, system)
     estimator, now_ns = vehicle.estimator, inputs.monotonic_ns
     measurements, seen = inputs.vehicle.measurements, inputs.autopilot.range_down
     if seen is not None and estimator is not None and vehicle.ranges.newest_ns != seen.t_ns <= inputs.t_ns:
@@ -88,6 +88,35 @@ def _in_present_utc(vehicle: VehicleMemory, inputs: StepInputs) -> VehicleMemory
         contradictions=Contradictions(),
         sightings=SightingWatch(),
         ranges=RangeWatch(),
+    )
+
+
+def _in_present_frame(vehicle: VehicleMemory, inputs: StepInputs, system: System) -> VehicleMemory:
+    """Return what is known in the frame that the autopilot's positions are in now.
+
+    The estimate restarts where nobody knows by how much that has moved.
+    """
+    before, now = vehicle.frame_moves, inputs.autopilot.frame_moves
+    if now == before:
+        return vehicle
+    estimator = vehicle.estimator if now.origin_count == before.origin_count else None
+    if estimator is not None:
+        seen_m = between(before.shift_enu_m, now.shift_enu_m)
+        told_m = between(before.origin_shift_enu_m, now.origin_shift_enu_m)
+        variance_m2 = now.shift_variance_m2 - before.shift_variance_m2
+        # What is seen from the drone steps with its report; the fixes step with the first that comes from now on.
+        newest_ns = system.estimator.newest_fix_ns(estimator)
+        told_ns = now.stepped_ns if newest_ns is None else newest_ns + 1
+        steps = [_frame_step(now.stepped_ns, seen_m, np.zeros(3), variance_m2)] if seen_m.any() else []
+        steps += [_frame_step(told_ns, np.zeros(3), told_m, 0.0)] if told_m.any() else []
+        estimator = system.estimator.fuse(estimator, steps)
+    return replace(vehicle, estimator=estimator, ranges=RangeWatch(), frame_moves=now)
+
+
+def _frame_step(t_ns: int, seen_m: Array, told_m: Array, variance_m2: float) -> Measurement:
+    covariance = np.diag(np.concatenate([np.full(3, variance_m2), np.zeros(3)]))
+    return Measurement(
+        t_ns=t_ns, quantity=Quantity.FRAME_STEP, value=np.concatenate([seen_m, told_m]), covariance=covariance
     )
 
 

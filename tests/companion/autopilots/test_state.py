@@ -93,6 +93,12 @@ def test_jump_that_flying_cannot_explain_is_a_shift_of_the_frame() -> None:
     assert back.view.frame_moves.shift_enu_m == pytest.approx((0.0, 0.0, 0.0))
 
 
+@pytest.mark.parametrize("at_once_m", [0.11, 0.18])
+def test_correction_with_a_fix_is_no_shift_and_a_larger_one_is(at_once_m: float) -> None:
+    state = _hear(LEVEL, _at(0, (0.0, 0.0, 0.0), (5.0, 0.0, 0.0)), _at(20, (0.1 + at_once_m, 0.0, 0.0)))
+    assert any(state.view.frame_moves.shift_enu_m) is (at_once_m > 0.15)
+
+
 @given(gap_ms=st.integers(4, 900), braking=st.floats(0.0, 8.0), speed=st.floats(0.0, 20.0))
 def test_hard_flying_over_a_gap_in_the_link_is_no_shift(gap_ms: int, braking: float, speed: float) -> None:
     gap_s = gap_ms * 1e-3
@@ -104,9 +110,20 @@ def test_hard_flying_over_a_gap_in_the_link_is_no_shift(gap_ms: int, braking: fl
 def test_moved_origin_is_counted_and_a_repeated_one_is_not() -> None:
     state = _hear(_origin(475_000_000, 80_000_000, 400_000), _origin(475_000_000, 80_000_000, 400_000))
     assert state.view.frame_moves.origin_count == 1
-    moved = _hear(*2 * [_origin(475_000_020, 80_000_000, 400_000)], state=state)
+    moved = _hear(*2 * [_origin(475_000_200, 80_000_000, 400_000)], state=state)
     assert moved.view.frame_moves.origin_count == 2
     assert _hear(*2 * [_origin(475_000_000, 80_000_000, 401_000)], state=state).view.frame_moves.origin_count == 2
+
+
+def test_origin_that_moves_by_what_the_drone_stepped_leaves_the_ground_known() -> None:
+    flies = (LEVEL, _at(0, (0.0, 0.0, 0.0)), _at(20, (-2.3, 0.0, -0.9)))
+    state = _hear(*2 * [_origin(475_000_000, 80_000_000, 400_000)], *flies)
+    moves = _hear(*2 * [_origin(475_000_200, 80_000_000, 399_000)], state=state).view.frame_moves
+    assert moves.origin_count == 1
+    assert moves.shift_enu_m == pytest.approx((0.0, -2.3, 0.9))
+    assert moves.origin_shift_enu_m == pytest.approx((0.0, -2.22, 1.0), abs=0.01)
+    again = _hear(*2 * [_origin(475_000_400, 80_000_000, 399_000)], state=state).view.frame_moves
+    assert again.origin_count == 2
 
 
 @given(others=st.lists(st.integers(480_000_000, 490_000_000), unique=True, max_size=5))

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from companion.autopilots.frame_moves import FrameMoves
 from companion.config.companion import CompanionConfig
 from companion.config.estimation import EstimatorKind
 from companion.config.integrity import IntegrityConfig, ReceiverFrames
@@ -64,12 +65,19 @@ def test_nothing_is_elsewhere_by_less_than_three_deviations_of_what_is_stated(
         assert is_seen_elsewhere(seen(off_m + 1.0, std_m=std_m, fix_std_m=fix_std_m), config)
 
 
-def test_between_two_frames_and_after_a_jump_of_its_own_frame_any_offset_may_be_true() -> None:
+def test_between_two_frames_any_offset_may_be_true() -> None:
     assert not is_seen_elsewhere(seen(5.0, has_one_frame=False), AUTO)
-    facts = seen(5.0)
-    moved = replace(facts.autopilot.frame_moves, shift_enu_m=(2.0, 0.0, 0.0))
+
+
+@pytest.mark.parametrize(("origin_m", "is_elsewhere"), [(0.0, False), (2.0, True)])
+def test_step_of_its_own_place_explains_as_much_unless_its_origin_has_moved(
+    origin_m: float, is_elsewhere: bool
+) -> None:
+    facts = seen(HALF_M + 1.9)
     assert is_seen_elsewhere(facts, AUTO)
-    assert not is_seen_elsewhere(replace(facts, autopilot=replace(facts.autopilot, frame_moves=moved)), AUTO)
+    moved = FrameMoves(shift_enu_m=(2.0, 0.0, 3.0), origin_shift_enu_m=(origin_m, 0.0, 3.0))
+    facts = replace(facts, autopilot=replace(facts.autopilot, frame_moves=moved))
+    assert is_seen_elsewhere(facts, AUTO) is is_elsewhere
 
 
 def test_what_no_sighting_has_shown_is_nowhere_else() -> None:

@@ -45,7 +45,7 @@ def _carried_m(state: AutopilotState, up_m: float, after_s: float, sensor_height
 
 @pytest.mark.parametrize(("distance_cm", "quality"), [(UNSEEN_CM, 0), (10_000, 0), (0, 0), (300, 1)])
 def test_reading_beyond_the_range_or_told_invalid_leaves_what_was_seen_last(distance_cm: int, quality: int) -> None:
-    state = _hear(LEVEL, _at(0, 1.2), _range(10, 7), _at(20, 1.0), _range(30, distance_cm, quality))
+    state = _hear(LEVEL, _at(0, 1.2), _range(10, 7), _at(20, 1.19), _range(30, distance_cm, quality))
     assert state.view.range_down is not None
     assert state.view.range_down.own is not None
     assert state.view.range_down.distance_m == pytest.approx(0.07)

@@ -80,11 +80,8 @@ def test_stamps_from_the_future_do_not_blind_the_filter_for_good() -> None:
 
 
 def test_late_data_of_one_sensor_do_not_take_away_what_the_fixes_tell() -> None:
-    buffer = run([fix(0.1 * i) for i in range(30)])
     late = [fix(0.01 * i, 1.0, Quantity.VELOCITY) for i in range(CONFIG.late_in_a_row_max + 5)]
-    for measurement in late:
-        buffer = fuse(MODEL, CONFIG, buffer, [measurement])
-    assert buffer is not None
+    buffer = run([*(fix(0.1 * i) for i in range(30)), *late])
     assert buffer.late == len(late)
     assert buffer.newest.tally.fused == 30
 

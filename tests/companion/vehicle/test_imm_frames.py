@@ -5,14 +5,16 @@ import math
 import numpy as np
 import pytest
 
-from companion.config.estimation import ImmConfig, ReceiversConfig
-from companion.core.data import Measurement, Quantity
+from companion.config.estimation import EstimatorKind, ImmConfig, ReceiversConfig
+from companion.core.data import Array, Measurement, Quantity
 from companion.vehicle.imm import ImmModel
 from companion.vehicle.imm_frames import horizontal_variance_m2, wandering
 from companion.vehicle.imm_numbers import Deck, numbers_of
-from companion.vehicle.imm_state import ImmState, start_state
+from companion.vehicle.imm_state import OFFSET, ImmState, start_state
 from companion.vehicle.imm_swing import SIZE
 from link.records import replace
+from tests.companion.vehicle.drives import NOMINAL, straight
+from tests.companion.vehicle.rides import arrivals, estimator, now_ns
 
 RECEIVERS = ReceiversConfig()
 FIX_STD_M = 0.02
@@ -68,3 +70,54 @@ def test_place_that_sightings_tell_is_as_good_as_they_are_whatever_the_frames() 
     for place, offset in ((0, 12), (1, 13)):
         seen[:, place, place], seen[:, offset, offset], seen[:, place, offset] = 0.03**2, 0.03**2, 0.0
     assert math.sqrt(horizontal_variance_m2(PLACED, weights, seen, math.inf)) == pytest.approx(0.03)
+
+
+STEP_M = np.array([2.0, -3.0, 0.7])
+
+
+def _step(seen_m: Array, told_m: Array, t_s: float) -> Measurement:
+    covariance = np.diag([0.06**2] * 3 + [0.0] * 3)
+    return Measurement(
+        t_ns=now_ns(t_s), quantity=Quantity.FRAME_STEP, value=np.concatenate([seen_m, told_m]), covariance=covariance
+    )
+
+
+def _moved(one: Measurement, after_s: float, seen_m: Array, told_m: Array) -> Measurement:
+    """What is measured in a frame that has stepped before."""
+    if one.t_ns <= now_ns(after_s) or one.quantity not in {Quantity.PAD, Quantity.POSITION}:
+        return one
+    return replace(one, value=one.value + (seen_m if one.quantity is Quantity.PAD else told_m))
+
+
+@pytest.mark.parametrize("told_m", [np.zeros(3), STEP_M], ids=["corrected", "origin"])
+@pytest.mark.parametrize("sees", [True, False])
+def test_frame_that_steps_takes_what_is_seen_along_and_leaves_what_stands_on_the_ground(
+    told_m: Array, sees: bool
+) -> None:
+    chosen, at_s = estimator(EstimatorKind.IMM), 8.05
+    sensors = replace(NOMINAL, frame_offset_m=0.5, pad_rate_hz=30.0 if sees else 0.0)
+    still = arrivals(straight(5.0, 20.0), sensors, 3)
+    moved = [_moved(one, at_s, STEP_M, told_m) for one in still] + [_step(STEP_M, told_m, at_s)]
+    health = chosen.health(chosen.fuse(None, moved))
+    assert (health.gated, health.recoveries, health.moves_to_sightings) == (0, 0, 0)
+    for t_ns in (now_ns(8.06), now_ns(8.3), now_ns(12.0)):
+        before, now = (
+            chosen.estimate(chosen.fuse(None, [one for one in said if one.t_ns <= t_ns]), t_ns)
+            for said in (still, moved)
+        )
+        assert before is not None
+        assert now is not None
+        shift_m = now.position_enu_m - before.position_enu_m
+        np.testing.assert_allclose(shift_m, STEP_M if sees else told_m, atol=0.06)
+
+
+def test_frame_that_steps_takes_a_vehicle_along_that_is_only_seen() -> None:
+    model = ImmModel(config=ImmConfig(), deck=Deck(), placed_by=Quantity.PAD)
+    moved = model.move_frame(model.start(_sighting()), _step(STEP_M, np.zeros(3), 0.0))
+    np.testing.assert_allclose(model.describe(moved, 0).position_enu_m, STEP_M)
+    assert _offset(moved) == pytest.approx(0.0)
+
+
+def _offset(state: ImmState) -> float:
+    means, _, weights = state.modes
+    return float(np.abs((weights @ means)[OFFSET]).max())

@@ -1,0 +1,97 @@
+"""What the autopilot's messages tell of its sensors: what is below it, its battery, and its receiver's frame; pure."""
+
+from collections.abc import Callable
+from math import radians
+
+from companion.autopilots.driver import AutopilotView
+from companion.core.data import OwnState, RangeReading
+from link.frames.geodesy import Datum
+from link.mavlink.clock_map import ClockMap
+from link.mavlink.dialect import Message, mavlink
+from link.records import replace
+
+OwnAt = Callable[[int], OwnState | None]
+"""The drone at a time in ns, None where its reports do not tell."""
+
+_CM = 0.01
+_INVALID = 1  # of a signal's quality in percent; 0 is unknown
+
+
+def with_sensor(view: AutopilotView, message: Message, clock: ClockMap, own_at: OwnAt) -> AutopilotView:
+    """Return the view after a DISTANCE_SENSOR, with the drone as `own_at` has it, or the first battery's status."""
+    if message.get_type() == "DISTANCE_SENSOR":
+        return replace(view, range_down=_range_reading(message, clock, own_at) or view.range_down)
+    return replace(view, battery_share=battery_share(message)) if is_of_first_battery(message) else view
+
+
+def is_of_first_battery(message: Message) -> bool:
+    """Return whether a BATTERY_STATUS is of the battery that flies the drone; others feed a payload."""
+    return bool(message.id == 0)
+
+
+def battery_share(message: Message) -> float | None:
+    """Return what a BATTERY_STATUS says is left, 0 to 1, None when it is not told."""
+    percent: int = message.battery_remaining
+    return percent / 100.0 if percent >= 0 else None
+
+
+def looks_down(message: Message) -> bool:
+    """Return whether a DISTANCE_SENSOR is of a range finder downwards; others are sectors around the drone."""
+    return bool(message.orientation == mavlink.MAV_SENSOR_ROTATION_PITCH_270)
+
+
+def _range_reading(message: Message, clock: ClockMap, own_at: OwnAt) -> RangeReading | None:
+    """Return what a range finder that looks down sees; at or beyond its range's ends it sees nothing."""
+    t_ns = clock.boot_to_utc_ns(message.time_boot_ms * 1_000_000)
+    is_within = message.min_distance < message.current_distance < message.max_distance
+    if t_ns is None or not (is_within and looks_down(message)) or message.signal_quality == _INVALID:
+        return None
+    return RangeReading(t_ns=t_ns, distance_m=message.current_distance * _CM, own=own_at(t_ns))
+
+
+_MOVED_RAD = 1e-8  # 6 cm; the field's resolution is 1e-7 degrees, 1 cm
+_MOVED_M = 0.05
+_GEOID_MAX_M = 120.0  # it lies between -107 and 86 m (EGM96)
+_GEOID_STEP_M = 1.0  # a smaller change of the geoid's height along a flight is left alone
+_LATITUDE_MAX_1E7 = 90 * 10**7
+_LONGITUDE_MAX_1E7 = 180 * 10**7
+
+
+def origin_above_sea(message: Message) -> Datum | None:
+    """Return the origin, its altitude above mean sea level, of a GPS_GLOBAL_ORIGIN; None of one off the earth."""
+    if abs(message.latitude) > _LATITUDE_MAX_1E7 or abs(message.longitude) > _LONGITUDE_MAX_1E7:
+        return None
+    return Datum(
+        latitude_rad=radians(message.latitude * 1e-7),
+        longitude_rad=radians(message.longitude * 1e-7),
+        altitude_m=message.altitude * 1e-3,
+    )
+
+
+def geoid_height_m(known_m: float | None, message: Message) -> float | None:
+    """Return the height of mean sea level above the ellipsoid, which the vehicle's fixes refer to.
+
+    Args:
+        known_m: so far; None before the first that was told, which is taken whatever it is.
+        message: GPS_RAW_INT, which says 0 where the receiver does not know its height above the ellipsoid.
+    """
+    if message.fix_type < mavlink.GPS_FIX_TYPE_3D_FIX or message.alt_ellipsoid == 0:
+        return known_m
+    told_m: float = (message.alt_ellipsoid - message.alt) * 1e-3
+    if abs(told_m) > _GEOID_MAX_M or (known_m is not None and abs(told_m - known_m) < _GEOID_STEP_M):
+        return known_m
+    return told_m
+
+
+def above_ellipsoid(above_sea: Datum, geoid_m: float | None) -> Datum:
+    """Return the origin above the ellipsoid; where nobody knows the geoid, its place is right and its height is not."""
+    return replace(above_sea, altitude_m=above_sea.altitude_m + (geoid_m or 0.0))
+
+
+def is_same(origin: Datum, other: Datum) -> bool:
+    """Return whether two origins are one, as exactly as they are sent."""
+    return (
+        abs(origin.latitude_rad - other.latitude_rad) < _MOVED_RAD
+        and abs(origin.longitude_rad - other.longitude_rad) < _MOVED_RAD
+        and abs(origin.altitude_m - other.altitude_m) < _MOVED_M
+    )
