@@ -1,7 +1,8 @@
 """The memory of a sortie, from its launch or first station until the drone is home, and how long its battery lasts.
 
 BATTERY_STATUS has the share in whole percents. Between two changes of it the time tells the rate of use, over the last
-half minute or more of this flight. What is left is taken for a percent less than told.
+half minute or more of this flight. What is left is taken for a percent less than told, and for less by what the rate
+has used since the last change, so that it also falls where nothing tells it any more.
 """
 
 import math
@@ -53,18 +54,18 @@ def use_per_s(watch: BatteryWatch) -> float | None:
     return (first - last) / max((last_ns - first_ns) * 1e-9, _SPAN_MIN_S)
 
 
-def left_s(watch: BatteryWatch, reserve_share: float) -> float:
-    """Return for how long the drone can fly before only the reserve is left; infinite while nothing tells.
+def left_s(watch: BatteryWatch, reserve_share: float, monotonic_ns: int) -> float:
+    """Return for how long from now the drone can fly before only the reserve is left; infinite while nothing tells.
 
     Without a rate all that can be said is whether the reserve is reached.
     """
     if watch.share is None:
         return math.inf
-    usable = watch.share - RESOLUTION - reserve_share
     rate = use_per_s(watch)
     if rate is None:
-        return math.inf if usable > 0.0 else 0.0
-    return max(usable, 0.0) / rate
+        return math.inf if watch.share - RESOLUTION > reserve_share else 0.0
+    used = rate * (monotonic_ns - watch.changes[-1][0]) * 1e-9
+    return max(watch.share - max(RESOLUTION, used) - reserve_share, 0.0) / rate
 
 
 class Way(Struct, frozen=True, kw_only=True, eq=False):

@@ -94,7 +94,7 @@ def _warning(sortie: SortieMemory, phase: Phase, s: Situation, config: Companion
     """Return what the pilot is told of the way home, with the numbers that it was first told with."""
     if phase not in OUT_PHASES:
         return None
-    lasts_s = left_s(sortie.battery, config.limits.battery_min_share)
+    lasts_s = left_s(sortie.battery, config.limits.battery_min_share, s.monotonic_ns)
     spare_s = lasts_s - home_s(s, config) if math.isfinite(lasts_s) else math.inf  # the way may be endless, too
     if spare_s > config.sortie.warn_before_s:
         return None
@@ -210,7 +210,8 @@ def _turn_home(sortie: SortieMemory, s: Situation, config: CompanionConfig) -> D
     """Return the way home before the point of no return is passed."""
     if is_fix_old(s, config):
         return None
-    lasts_s, needed_s = left_s(sortie.battery, config.limits.battery_min_share), home_s(s, config)
+    lasts_s = left_s(sortie.battery, config.limits.battery_min_share, s.monotonic_ns)
+    needed_s = home_s(s, config)
     return (Event.HOME_NOW, Cause(Reason.HOME_NOW, (lasts_s, needed_s))) if lasts_s <= needed_s < math.inf else None
 
 

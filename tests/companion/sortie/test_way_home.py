@@ -21,22 +21,26 @@ def watched(shares: list[tuple[float, float]]) -> BatteryWatch:
     return watch
 
 
+def left_of(watch: BatteryWatch, time_s: float) -> float:
+    return left_s(watch, RESERVE, round(time_s * 1e9))
+
+
 def test_rate_of_use_is_that_between_two_changes() -> None:
     # The first percent had begun before the flight: what it took says nothing.
     watch = watched([(0.0, 1.0), (3.0, 0.99), (9.0, 0.99), (21.0, 0.98), (39.0, 0.97)])
     assert use_per_s(watch) == pytest.approx(0.02 / 36.0)
-    assert left_s(watch, RESERVE) == pytest.approx((0.97 - RESOLUTION - RESERVE) * 1800.0)
+    assert left_of(watch, 39.0) == pytest.approx((0.97 - RESOLUTION - RESERVE) * 1800.0)
 
 
 def test_without_a_rate_only_the_reserve_is_told() -> None:
-    assert left_s(BatteryWatch(), RESERVE) == math.inf
-    assert left_s(watched([(0.0, 0.6), (10.0, 0.59)]), RESERVE) == math.inf
-    assert left_s(watched([(0.0, 0.21), (10.0, 0.2)]), RESERVE) == 0.0
+    assert left_of(BatteryWatch(), 0.0) == math.inf
+    assert left_of(watched([(0.0, 0.6), (10.0, 0.59)]), 10.0) == math.inf
+    assert left_of(watched([(0.0, 0.21), (10.0, 0.2)]), 10.0) == 0.0
 
 
 def test_two_quick_percents_of_a_voltage_that_sags_are_no_rate_of_use() -> None:
     sags = watched([(0.0, 0.51), (10.0, 0.5), (11.0, 0.49)])
-    assert left_s(sags, RESERVE) > 600.0
+    assert left_of(sags, 11.0) > 600.0
 
 
 def test_two_changes_told_at_once_make_no_rate() -> None:
@@ -47,6 +51,13 @@ def test_a_fuller_battery_is_another_one() -> None:
     watch = watched([(0.0, 0.5), (10.0, 0.49), (20.0, 0.48), (30.0, 0.9)])
     assert use_per_s(watch) is None
     assert watch.share == 0.9
+
+
+@given(silent_s=st.floats(0.0, 3600.0))
+def test_battery_that_tells_nothing_more_drains_on_as_it_did(silent_s: float) -> None:
+    watch = watched([(0.0, 0.62), (12.0, 0.61), (24.0, 0.60), (36.0, 0.59), (48.0, 0.58)])
+    truly_s = (0.58 - RESERVE) * 1200.0 - silent_s
+    assert left_of(watch, 48.0 + silent_s) == pytest.approx(max(min(truly_s, (0.57 - RESERVE) * 1200.0), 0.0))
 
 
 def test_a_share_that_is_not_told_changes_nothing() -> None:
