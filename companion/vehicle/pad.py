@@ -63,7 +63,8 @@ class PadPath(Struct, frozen=True, kw_only=True, eq=False):
         half_width_m: from its centre to the nearest edge; infinite until it is described.
         height_m: of its surface above the vehicle's road, or the water.
         mounting: how the vehicle carries it.
-        swing: how its deck tilts and shakes; None where the vehicle does not tell.
+        grade: of the road in the direction of the heading now, height per length; 0 where it is not estimated.
+        swing: how its deck tilts and shakes, beside the grade; None where the vehicle does not tell.
         unplaced: why the pad's place is not known; None when it is. Until then it is not landed on.
         frame_offset: of the drone's frame from the vehicle's fixes'.
     """
@@ -80,6 +81,7 @@ class PadPath(Struct, frozen=True, kw_only=True, eq=False):
     half_width_m: float = math.inf
     height_m: float = 0.0
     mounting: PadMounting = PadMounting()
+    grade: float = 0.0
     swing: PadSwing | None = None
     unplaced: Cause | None = None
     frame_offset: FrameOffset = FrameOffset()
@@ -123,6 +125,7 @@ def pad_path(
         half_width_m=math.inf if pad is None else 0.5 * min(pad.size_m),
         height_m=0.0 if pad is None else pad.height_m,
         mounting=PadMounting(is_afloat=pad is not None and pad.is_afloat, needs_heading=bool(lever_m[0] or lever_m[1])),
+        grade=0.0 if forecast.grade is None else float(forecast.grade[0]),
         swing=deck,
         unplaced=NOT_DESCRIBED if pad is None else HEADING_UNKNOWN if _is_about(forecast, pad) else None,
         frame_offset=_frame_offset(forecast, is_confirmed=is_confirmed),

@@ -26,7 +26,6 @@ _REPORT_AGE_MAX_S = 0.25
 _WAITS_MAX_S = 0.5
 _WAITS_STEPS = math.ceil(_WAITS_MAX_S / DT_S)
 _SLOW_M_S = 0.3  # slower than this a vehicle has no direction but its heading
-_SLOPE_FROM_M_S = 1.0  # from here on a vertical speed tells the grade
 # Lag with which an acceleration is believed: velocities at 10 Hz show a brake in 0.3 s, an accelerometer at once.
 _BELIEVES_S, _BELIEVES_BY_SENSOR_S = 0.3, 0.1
 _WAY_LAGS = 7.0
@@ -91,7 +90,7 @@ def course_of(memory: StepMemory, relative: Approach, pad: PadPath, way: WayDown
     ahead = np.array([math.cos(heading_rad), math.sin(heading_rad)])
     moves = speed_m_s > _SLOW_M_S
     direction = np.where(moves[:, None], velocity[:, :2] / np.maximum(speed_m_s, _SLOW_M_S)[:, None], ahead)
-    grade = float(velocity[0, 2]) / float(speed_m_s[0]) if speed_m_s[0] > _SLOPE_FROM_M_S else 0.0
+    backs_up = pad.yaw_rad is not None and float(direction[0] @ ahead) < 0.0
     model = np.empty((3, 2))
     model[0] = np.array(relative.position_enu_m[:2]) - deviation[0]
     model[1] = np.array(relative.velocity_enu_m_s[:2]) - deviation[1]
@@ -102,7 +101,8 @@ def course_of(memory: StepMemory, relative: Approach, pad: PadPath, way: WayDown
         along_m_s2=direction[:, 0] * acceleration[:, 0] + direction[:, 1] * acceleration[:, 1],
         left_m_s2=direction[:, 0] * acceleration[:, 1] - direction[:, 1] * acceleration[:, 0],
         way_down=way.path,
-        slope=grade * direction + (0.0 if pad.swing is None else _at(way.offset_s, pad, pad.swing.slope)),
+        slope=(-pad.grade if backs_up else pad.grade) * direction
+        + (0.0 if pad.swing is None else _at(way.offset_s, pad, pad.swing.slope)),
         shake_enu=_shake_at(way.offset_s, pad),
         air_enu_m_s2=memory.model.tracking.air_enu_m_s2.copy(),
         model=model,
