@@ -9,7 +9,7 @@ import pytest
 
 from companion.config.integrity import ReceiverFrames
 from companion.core.data import Array, Measurement, Quantity
-from companion.landing.sortie.over_vehicle import stands_on_deck
+from companion.landing.sortie.over_vehicle import is_deck_quiet, stands_on_deck
 from companion.situation.phases import Phase
 from companion.situation.situation import Situation
 from link.messages import Command, Vector3
@@ -122,3 +122,9 @@ def test_drone_that_was_disarmed_on_the_deck_starts_its_motors_by_a_new_order_on
     wait(200, tilt_rad=0.0)
     assert not flight.view.armed
     assert flight.history[-2:] == [Phase.ON_DECK, Phase.PILOT]
+
+
+@pytest.mark.parametrize(("grade", "is_quiet"), [(0.1, True), (0.0, False)])
+def test_deck_that_heaves_is_not_quiet_and_one_that_climbs_a_road_is(grade: float, *, is_quiet: bool) -> None:
+    climbs = replace(pad_at((5.0, 0.0, 0.5)), yaw_rad=0.0, grade=grade)
+    assert is_deck_quiet(situation(0.0, pad=climbs), CONFIG.sortie.launch) is is_quiet
