@@ -95,6 +95,7 @@ class Forecast(Struct, frozen=True, kw_only=True, eq=False):
         yaw_std_rad: standard deviation of the heading now, 0 where there is none.
         grade: (n,) of the road in the direction of the heading, m of height per m; None where it is not estimated.
         tilt_rad: (n, 4) roll, its rate (rad/s), pitch and its rate of V against the road; None where it is not told.
+        tilt_std_rad: (n, 4) standard deviations of the same.
         frame_offset_enu_m: (2,) of the drone's frame from the vehicle's fixes', None where it is not estimated.
         frame_offset_std_m: standard deviation of either of these, which sightings of the pad make small.
         is_height_told: lately a sighting or a range told how high it is for the drone, whose own height may be wrong.
@@ -113,6 +114,7 @@ class Forecast(Struct, frozen=True, kw_only=True, eq=False):
     yaw_std_rad: float = 0.0
     grade: Array | None = None
     tilt_rad: Array | None = None
+    tilt_std_rad: Array | None = None
     frame_offset_enu_m: Array | None = None
     frame_offset_std_m: float = math.inf
     is_height_told: bool = False

@@ -17,7 +17,7 @@ STEPS_MAX = 134  # as far as the pad is forecast, 4 s: 3.5 s of sinking and the 
 MODE = 7  # the column of the uniform numbers that chooses a sample's model of the estimator
 _SEED = 1_912
 _STEADY_COUNT, _EVENT_COUNT = 64, 32
-_NORMALS, _UNIFORMS = 20, 8
+_NORMALS, _UNIFORMS, _TILTS = 20, 8, 4
 
 
 class Draws(Struct, frozen=True, kw_only=True, eq=False):
@@ -29,6 +29,7 @@ class Draws(Struct, frozen=True, kw_only=True, eq=False):
         normals: (n, 20) standard normal.
         uniforms: (n, 8) from 0 to 1, exclusive.
         pushes: (n, `STEPS_MAX`, 2) standard normal.
+        tilts: (n, 4) standard normal.
     """
 
     branch: IndexArray
@@ -36,6 +37,7 @@ class Draws(Struct, frozen=True, kw_only=True, eq=False):
     normals: Array
     uniforms: Array
     pushes: Array
+    tilts: Array
 
 
 @cache
@@ -43,17 +45,19 @@ def draws() -> Draws:
     """Return the numbers."""
     counts = (_STEADY_COUNT, _EVENT_COUNT, _EVENT_COUNT, _EVENT_COUNT)
     generator = np.random.default_rng(_SEED)
-    numbers = np.concatenate([_hypercube(generator, count) for count in counts])
+    numbers = np.concatenate([_hypercube(generator, count, _NORMALS + _UNIFORMS) for count in counts])
+    pushes = generator.standard_normal((sum(counts), STEPS_MAX, 2))
     return Draws(
         branch=np.repeat(np.arange(len(counts)), counts),
         share=np.repeat(1.0 / np.array(counts), counts),
         normals=np.asarray(ndtri(numbers[:, :_NORMALS])),
         uniforms=numbers[:, _NORMALS:].copy(),
-        pushes=generator.standard_normal((sum(counts), STEPS_MAX, 2)),
+        pushes=pushes,
+        tilts=np.asarray(ndtri(np.concatenate([_hypercube(generator, count, _TILTS) for count in counts]))),
     )
 
 
-def _hypercube(generator: np.random.Generator, count: int) -> Array:
-    """Return (count, 28) numbers from 0 to 1, exclusive."""
-    places = generator.permuted(np.tile(np.arange(count)[:, None], (1, _NORMALS + _UNIFORMS)), axis=0)
+def _hypercube(generator: np.random.Generator, count: int, size: int) -> Array:
+    """Return (count, size) numbers from 0 to 1, exclusive."""
+    places = generator.permuted(np.tile(np.arange(count)[:, None], (1, size)), axis=0)
     return np.asarray((places + generator.uniform(0.05, 0.95, places.shape)) / count)

@@ -209,8 +209,8 @@ def _fly(path: Array, samples: Samples, sample: int, descent: Descent, out: Arra
         lowest_m = rules.foot_radius_m * min(math.hypot(lean[0], lean[1]) / GRAVITY_M_S2, 1.0)
         if height_m - samples.vertical[sample, 0] - lowest_m <= 0.0:
             out[IN_S] = k * DT_S
-            off += known[:2] - path[before + k, :2] - course.shake_enu[:, k]
-            lean += GRAVITY_M_S2 * course.slope[k]
+            off += known[:2] - path[before + k, :2] - course.shake_enu[:, k] - samples.deck[sample, 1:]
+            lean += GRAVITY_M_S2 * (course.slope[k] + samples.deck[sample, 0])
             _touch(off, lean, sink_m_s + samples.vertical[sample, 1], course.air_enu_m_s2, out)
             return
         leans_m_s2 = drone.level_m_s2 if height_m < drone.level_below_m else GRAVITY_M_S2

@@ -104,6 +104,7 @@ class Samples(NamedTuple):
         delay_s: (n,) of what is known of it.
         deviation: (n, 4, 2) state of the cascade now.
         vertical: (n, 2) height that the drone is lower than believed, m, and how much faster it sinks, m/s.
+        deck: (n, 3, 2) slope of the deck, place and velocity of the pad's shake at the contact, off the course's.
         pushes: (n, m, 2) standard normal: of the sample's gusts, and of the errors of the one after it.
     """
 
@@ -113,6 +114,7 @@ class Samples(NamedTuple):
     delay_s: Array
     deviation: Array
     vertical: Array
+    deck: Array
     pushes: Array
 
 

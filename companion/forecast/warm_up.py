@@ -27,6 +27,7 @@ def compile_rollout() -> None:
         delay_s=np.zeros(1),
         deviation=np.zeros((1, 4, 2)),
         vertical=np.zeros((1, 2)),
+        deck=np.zeros((1, 3, 2)),
         pushes=np.zeros((1, STEPS_MAX, 2)),
     )
     drone, rules = Follower(*(1.0,) * len(Follower._fields)), Rules(*(1.0,) * len(Rules._fields))

@@ -182,6 +182,7 @@ class ImmModel:
             is_coarse=state.fix_bias_variance_m2 > 0.0 or self.placed_by is Quantity.PAD,
             grade=grade,
             tilt_rad=None if state.deck is None else tilt,
+            tilt_std_rad=None if state.deck is None else std[:, 4:],
             swing=None if state.deck is None else state.deck.oscillators.reshape(3, 3)[:, :2],
             yaw_std_rad=math.sqrt(heading_variance),
             frame_offset_enu_m=(weights @ means)[OFFSET[:2]],

@@ -60,12 +60,13 @@ def kinematics_jacobian(x: Array, motion: Array) -> Array:
 
 @compiled_kernel
 def horizon(x: Array, P: Array, offset_s: Array, noise: Array, motion: Array) -> tuple[Array, Array]:
-    """Return the means `(n, 25)` and the pad's variances `(n, 4)` at `offset_s` (n,), not falling: place, rate upwards.
+    """Return the means `(n, 25)` and variances `(n, 8)` at `offset_s` (n,), not falling.
 
-    The pad's, because a heading that is not well known moves it about an antenna that is.
+    Of the pad's place, because a heading that is not well known moves it about an antenna that is; of its rate upwards;
+    and of the roll, its rate, the pitch and its rate.
     """
     n = len(offset_s)
-    means, variances = np.empty((n, SIZE)), np.empty((n, 4))
+    means, variances = np.empty((n, SIZE)), np.empty((n, 8))
     passed_s, glides_s = 0.0, offset_s[n - 1] - offset_s[max(n - 2, 0)]  # most horizons are even
     steps = steps_of(glides_s, motion)
     for i in range(n):
@@ -80,6 +81,8 @@ def horizon(x: Array, P: Array, offset_s: Array, noise: Array, motion: Array) ->
         variances[i, 0], variances[i, 1] = S[0, 0], S[1, 1]
         _, rising = antenna_velocity(x, np.zeros(4))
         variances[i, 2], variances[i, 3] = S[8, 8], (times(rising[2:3], S) @ rising[2])[0]
+        for j in range(4):
+            variances[i, 4 + j] = P[ROLL + j, ROLL + j]
         if motion[12] > 0.0:
             _, H = pad_swing(x, ROLL, motion[8])
             H[:, 7] = 0.0
@@ -104,7 +107,7 @@ def forecast_modes(
 
     Returns:
         Position, velocity and acceleration, each (n, 3), heading and grade, each (n,), the tilt (n, 4) as
-        `imm_swing` has it, the pad's deviations (n, 4) as `horizon` has them, and the present variance of the heading,
+        `imm_swing` has it, the deviations (n, 8) as `horizon` has them, and the present variance of the heading,
         rad^2.
     """
     directed = with_direction(motion, modes, known_variance)

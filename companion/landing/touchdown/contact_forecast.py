@@ -15,7 +15,7 @@ from companion.forecast.samples import Descent, Samples
 from companion.landing.decisions.waiting import is_moment_quiet
 from companion.landing.state.memory import ForecastMemory, StepMemory
 from companion.landing.state.step_data import StepInputs, System
-from companion.landing.touchdown.rollout_errors import as_driven, draw_errors, relearns_hz
+from companion.landing.touchdown.rollout_errors import as_driven, draw_deck, draw_errors, relearns_hz
 from companion.landing.touchdown.rollout_inputs import (
     course_of,
     deviation_now,
@@ -89,6 +89,7 @@ def forecast_contact(
     numbers = draws()
     stands = vehicle_stands(situation, config.chase)
     errors = draw_errors(then, pad, inputs.response, numbers)
+    deck = draw_deck(pad, way_down.contact_s, numbers.tilts)
     late_s = memory.vehicle.hindsight.lateness_s or age_s
     delay_s = late_s + 0.5 / config.setpoints.rate_hz + inputs.link_delay.mean_s + inputs.link_delay.std_s * errors.late
     speed_m_s = float(course.speed_m_s[0])
@@ -108,6 +109,7 @@ def forecast_contact(
         delay_s=np.maximum(delay_s, 0.0),
         deviation=deviation + errors.deviation,
         vertical=errors.vertical,
+        deck=deck,
         pushes=numbers.pushes,
     )
     error_std_m_s = math.sqrt(float(np.mean(np.square(vehicle[:, 1]))))

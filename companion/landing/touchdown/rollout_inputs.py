@@ -33,10 +33,17 @@ _SENSOR_HOLD_NS = 1_000_000_000
 
 
 class WayDown(Struct, frozen=True, kw_only=True, eq=False):
-    """The planned descent, without a wait: (m,) times from now; (3, m) height, rate and acceleration over the pad."""
+    """The planned descent, without a wait.
+
+    Attributes:
+        offset_s: (m,) times from now.
+        path: (3, m) height, rate and acceleration over the pad.
+        contact_s: when it ends.
+    """
 
     offset_s: Array
     path: Array
+    contact_s: float
 
     @property
     def lasts_s(self) -> float:
@@ -57,7 +64,8 @@ def way_to_contact(memory: StepMemory, situation: Situation, config: CompanionCo
     if not len(below):
         return None
     count = int(below[0]) + 1 + _WAITS_STEPS
-    return WayDown(offset_s=_OFFSETS_S[:count], path=path[:, :count].copy())
+    contact_s = float(_OFFSETS_S[below[0]])
+    return WayDown(offset_s=_OFFSETS_S[:count], path=path[:, :count].copy(), contact_s=contact_s)
 
 
 def deviation_now(memory: StepMemory, inputs: StepInputs, pad: PadPath) -> Array:

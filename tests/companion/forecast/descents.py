@@ -71,5 +71,6 @@ def samples(count: int = 1, *, delay_s: float = 0.2, kind: int = STEADY, event: 
         delay_s=np.full(count, delay_s),
         deviation=np.zeros((count, 4, 2)),
         vertical=np.zeros((count, 2)),
+        deck=np.zeros((count, 3, 2)),
         pushes=np.zeros((count, STEPS_MAX, 2)),
     )

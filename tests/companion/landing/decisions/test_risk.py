@@ -17,7 +17,14 @@ from tests.companion.facts import CONFIG, changed, forecast_of, pad_at, situatio
 
 DESCENT = CONFIG.descent
 WAITING_M = DESCENT.wait.height_m
-SWINGING = PadSwing(slope=np.zeros((5, 2)), shake_enu=np.zeros((3, 5, 2)), climb_std_m_s=np.zeros(5), heave_rad_s=0.6)
+SWINGING = PadSwing(
+    slope=np.zeros((5, 2)),
+    shake_enu=np.zeros((3, 5, 2)),
+    climb_std_m_s=np.zeros(5),
+    tilt_std_rad=np.zeros((5, 4)),
+    lengths_m=(0.0, 0.0),
+    heave_rad_s=0.6,
+)
 RISK = DESCENT.risk.begins_max
 IN_S = 2.0
 

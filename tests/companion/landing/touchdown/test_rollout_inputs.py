@@ -1,13 +1,19 @@
-"""What a rollout expects of the deck: its slope is the road's and the swing's, whatever the pad's height does."""
+"""What a rollout expects of the deck: its slope is the road's and the swing's, whatever the pad's height does.
+
+And what may be off of it: as much of slope and shake as of the tilt.
+"""
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from companion.core.data import Array
 from companion.landing.state.memory import ModelMemory, StepMemory
+from companion.landing.touchdown.rollout_errors import draw_deck
 from companion.landing.touchdown.rollout_inputs import course_of, way_to_contact
 from companion.vehicle.pad import PadPath
-from companion.vehicle.shake import PadSwing
+from companion.vehicle.shake import PadSwing, tilted_deck
 from link.records import replace
 from tests.companion.facts import CONFIG, pad_at, reference_at, situation
 
@@ -40,6 +46,43 @@ def test_swing_tilts_the_deck_beside_the_road() -> None:
     pad = replace(pad_at((4.0, 0.0, 0.0)), yaw_rad=0.0, grade=GRADE)
     n = len(pad.offset_s)
     shake = np.zeros((3, n, 2))
-    swing = PadSwing(slope=np.tile([0.0, 0.05], (n, 1)), shake_enu=shake, climb_std_m_s=np.zeros(n), heave_rad_s=1.0)
+    swing = PadSwing(
+        slope=np.tile([0.0, 0.05], (n, 1)),
+        shake_enu=shake,
+        climb_std_m_s=np.zeros(n),
+        tilt_std_rad=np.zeros((n, 4)),
+        lengths_m=(0.0, 0.0),
+        heave_rad_s=1.0,
+    )
     slope = slope_over(replace(pad, swing=swing))
     np.testing.assert_allclose(slope, np.tile([GRADE, 0.05], (len(slope), 1)))
+
+
+@given(
+    yaw_rad=st.floats(-3.0, 3.0),
+    tilt=st.tuples(*4 * [st.floats(-0.2, 0.2)]),
+    lengths_m=st.tuples(st.floats(0.0, 3.0), st.floats(0.0, 3.0)),
+)
+def test_deck_that_tilts_otherwise_is_off_by_what_the_tilt_makes_of_it(
+    yaw_rad: float, tilt: tuple[float, float, float, float], lengths_m: tuple[float, float]
+) -> None:
+    n = 3
+    roll, pitch = ((1.0, 0.1, length_m) for length_m in lengths_m)
+    slope, shake = tilted_deck(np.full(n, yaw_rad), np.tile(tilt, (n, 1)), roll, pitch)
+    swing = PadSwing(
+        slope=np.zeros((n, 2)),
+        shake_enu=np.zeros((3, n, 2)),
+        climb_std_m_s=np.zeros(n),
+        tilt_std_rad=np.outer([0.0, 1.0, 2.0], np.abs(tilt)),
+        lengths_m=lengths_m,
+        heave_rad_s=1.0,
+    )
+    pad = replace(pad_at(), offset_s=np.array([0.0, 0.5, 1.0]), yaw_rad=yaw_rad, swing=swing)
+    expected = np.stack([slope[0], shake[0, 0], shake[1, 0]])
+    for contact_s, size in ((0.0, 0.0), (0.5, 1.0), (0.75, 1.5)):
+        off = draw_deck(pad, contact_s, np.sign(tilt)[None])
+        np.testing.assert_allclose(off, size * expected[None], atol=1e-12)
+
+
+def test_deck_that_tells_no_tilt_is_off_by_nothing() -> None:
+    assert not draw_deck(pad_at(), 0.5, np.ones((4, 4))).any()
