@@ -8,8 +8,10 @@ from typing import Any, ParamSpec, Protocol, TypeVar, cast
 
 import numba
 from numba import njit
+from numba.core import event
 
 from link.errors import UserError
+from link.program.interrupts import begin_compiling, end_compiling
 
 _TRIED_NUMBA = (0, 68)
 if numba.version_info.short == _TRIED_NUMBA:  # others load what they keep in their own way: more memory, the same code
@@ -19,6 +21,19 @@ if numba.version_info.short == _TRIED_NUMBA:  # others load what they keep in th
 
 _KEPT_NAME = re.compile(r"_(?P<digest>[0-9a-f]{12})-[0-9]+\.")
 """The end of a function's name and its line, in the name of a file that numba keeps."""
+
+
+class _Compiler(event.Listener):  # type: ignore[misc]  # numba has few annotations
+    """Told by numba of all that it compiles; what it only loads is none of that."""
+
+    def on_start(self, event: object) -> None:  # noqa: ARG002 (numba's)
+        begin_compiling()
+
+    def on_end(self, event: object) -> None:  # noqa: ARG002 (numba's)
+        end_compiling()
+
+
+event.register("numba:compile", _Compiler())
 
 P = ParamSpec("P")
 R = TypeVar("R")

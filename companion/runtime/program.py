@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 from companion.config.companion import CompanionConfig
 from companion.runtime.command_line import MavlinkArguments, RecordArguments, RunArguments
 from link.mavlink.signing import Signing
-from link.program.cli import Patience
 from link.recording.recorder import BackgroundRecorder
 from link.ros2.layout import open_layout
 from link.ros2.options import Ros2Options
@@ -70,14 +69,13 @@ def run_program(asked: Program) -> None:
             open_layout(asked.zenoh, asked.ros2, asked.keys, (f"/{asked.keys.drone}", "companion"))
         )
         # What a user may have got wrong is open now: the numerics take their time, up to a minute to be compiled.
-        with Patience("companion"):
-            from companion.runtime.loop import run
-            from companion.runtime.options import Links
+        from companion.runtime.loop import run
+        from companion.runtime.options import Links
 
-            recorder = _recorder(asked)
-            if recorder is not None:
-                stack.callback(recorder.close)
-            node = _node(asked, recorder, signing)
+        recorder = _recorder(asked)
+        if recorder is not None:
+            stack.callback(recorder.close)
+        node = _node(asked, recorder, signing)
         transport.receive(0.0)  # what has come meanwhile is old, and its time of receipt is not known
         links = Links(keys=asked.keys, transport=transport, zenoh=zenoh, signing=memory)
         timings = run(node, links, _loop_options(asked, signs=signing is not None))

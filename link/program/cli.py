@@ -18,12 +18,9 @@ from typer.main import get_command
 
 from link.errors import UserError
 from link.program.clock import collect_rarely
+from link.program.exit_codes import EXIT_INTERRUPTED, EXIT_OK, EXIT_USER_ERROR
 from link.program.help import NO_EXAMPLES, App, Examples, explain
 from link.program.text import printable
-
-EXIT_OK = 0
-EXIT_USER_ERROR = 2
-EXIT_INTERRUPTED = 130
 
 SetOption = Annotated[
     list[str] | None,
@@ -180,9 +177,6 @@ def _fail(name: str, message: str, hint: str = "") -> int:
 
 
 _AFTER_S = 3.0
-PATIENCE = (
-    "loading the numerics; after an installation or an update they are compiled first, which takes a minute or two"
-)
 
 
 class Patience:
@@ -194,7 +188,7 @@ class Patience:
         after_s: from the beginning of the block.
     """
 
-    def __init__(self, program: str, doing: str = PATIENCE, after_s: float = _AFTER_S) -> None:
+    def __init__(self, program: str, doing: str, after_s: float = _AFTER_S) -> None:
         self._timer = threading.Timer(after_s, lambda: sys.stderr.write(f"{program}: {doing}\n"))
         self._timer.daemon = True
 

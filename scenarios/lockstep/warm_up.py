@@ -13,13 +13,17 @@ import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cache
-from multiprocessing import get_context
 from pathlib import Path
 
 from link.errors import UserError
-from link.program.cli import EXIT_OK, EXIT_USER_ERROR
+from link.program.exit_codes import EXIT_OK, EXIT_USER_ERROR
+from link.program.interrupts import EndingAtOnce, take_interrupts
 
 _ROOT = Path(__file__).parents[2]
+_MODULE = "scenarios.lockstep.warm_up"
+_BESIDE = "beside"
+"""The argument of the second process."""
+
 _TOLD_EVERY_S = 15.0
 
 
@@ -50,28 +54,25 @@ def _compile_in_two() -> None:
     from companion.config.estimation import EstimatorConfig  # noqa: PLC0415 (see above)
     from companion.vehicle.factory import make_estimator  # noqa: PLC0415 (see above)
 
-    beside = get_context("spawn").Process(target=_compile_simulator_and_planner, daemon=True)
-    beside.start()
-    try:
-        make_estimator(EstimatorConfig())
-    finally:
-        beside.join()
+    with subprocess.Popen([sys.executable, "-m", _MODULE, _BESIDE]) as beside:
+        try:
+            make_estimator(EstimatorConfig())
+        except UserError:
+            beside.kill()
+            raise
 
 
 def _compile_simulator_and_planner() -> None:
-    try:
-        from companion.runtime.build import make_guidance, warm_up  # noqa: PLC0415 (see above)
-        from link.zenoh.keys import Keys  # noqa: PLC0415 (see above)
-        from scenarios.catalogue.catalogue import load_scenario  # noqa: PLC0415 (see above)
-        from scenarios.lockstep.lockstep import START_NS  # noqa: PLC0415 (see above)
-        from scenarios.simulation.simulation import Simulation  # noqa: PLC0415 (see above)
+    from companion.runtime.build import make_guidance, warm_up  # noqa: PLC0415 (see above)
+    from link.zenoh.keys import Keys  # noqa: PLC0415 (see above)
+    from scenarios.catalogue.catalogue import load_scenario  # noqa: PLC0415 (see above)
+    from scenarios.lockstep.lockstep import START_NS  # noqa: PLC0415 (see above)
+    from scenarios.simulation.simulation import Simulation  # noqa: PLC0415 (see above)
 
-        scenario = load_scenario("straight_5")
-        Simulation(scenario, 1, Keys(), START_NS, instant=False, publishes_truth=False).step()
-        config = scenario.system.companion
-        warm_up(make_guidance(config.guidance.kind, config.guidance), config)
-    except UserError:  # the process that waits for this one comes to the same, and tells it
-        sys.exit(EXIT_USER_ERROR)
+    scenario = load_scenario("straight_5")
+    Simulation(scenario, 1, Keys(), START_NS, instant=False, publishes_truth=False).step()
+    config = scenario.system.companion
+    warm_up(make_guidance(config.guidance.kind, config.guidance), config)
 
 
 def compile_once() -> None:
@@ -84,7 +85,7 @@ def compile_once() -> None:
     """
     if any(mark.exists() for mark in _marks()):
         return
-    if subprocess.run([sys.executable, "-m", "scenarios.lockstep.warm_up"], check=False).returncode:
+    if subprocess.run([sys.executable, "-m", _MODULE], check=False).returncode:
         raise UserError("the numerical kernels could not be compiled: see above")
 
 
@@ -139,13 +140,12 @@ def _told() -> Iterator[None]:
 
 def main() -> int:
     """Compile what a step needs into the cache and return the exit code."""
-    sys.stderr.write("compiling the numerical kernels, once; this takes a minute or two\n")
     try:
         with _told():
             _compile_in_two()
             warm_process()
     except UserError as error:
-        sys.stderr.write(f"scenarios.lockstep.warm_up: {error}\n")
+        sys.stderr.write(f"{_MODULE}: {error}\n")
         return EXIT_USER_ERROR
     from link.compiled import remove_outdated  # noqa: PLC0415 (it loads numba)
 
@@ -154,5 +154,16 @@ def main() -> int:
     return EXIT_OK
 
 
+def _main_beside() -> int:
+    try:
+        _compile_simulator_and_planner()
+    except UserError:  # the process that waits for this one comes to the same, and tells it
+        return EXIT_USER_ERROR
+    return EXIT_OK
+
+
 if __name__ == "__main__":
-    sys.exit(main())
+    is_beside = sys.argv[1:] == [_BESIDE]
+    take_interrupts(f"{_MODULE}, second process" if is_beside else _MODULE)
+    with EndingAtOnce():
+        sys.exit(_main_beside() if is_beside else main())

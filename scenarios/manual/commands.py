@@ -10,11 +10,11 @@ from scenarios.manual.markdown import block, page
 
 PROGRAMS: Mapping[str, str] = MappingProxyType(
     {
-        "companion": "companion.__main__",
-        "pad-detector": "companion.eyes.__main__",
-        "ground-vehicle": "scenarios.ground_vehicle",
-        "sim-autopilot": "sim_autopilot.__main__",
-        "scenarios": "scenarios.__main__",
+        "companion": "companion.app",
+        "pad-detector": "companion.eyes.app",
+        "ground-vehicle": "scenarios.commands.ground_vehicle",
+        "sim-autopilot": "sim_autopilot.app",
+        "scenarios": "scenarios.app",
     }
 )
 """The programs, and the modules that their command lines are in."""

@@ -9,7 +9,6 @@ from dataclasses import dataclass
 import numpy as np
 import structlog
 
-from link.program.cli import Patience
 from link.transports.opening import open_transport
 from link.zenoh.keys import Keys
 from link.zenoh.session import ZenohOptions, open_session
@@ -48,8 +47,7 @@ def run(settings: SimAutopilotConfig, autopilot: AutopilotConfig, options: RunOp
     with ExitStack() as stack:
         transports = [stack.enter_context(open_transport(device, is_patient=True)) for device in options.devices]
         zenoh = stack.enter_context(open_session(options.zenoh))
-        with Patience("sim-autopilot"):  # loads the compiled kernels before time starts to count
-            AutopilotNode(autopilot, 0).step(None, np.zeros(3))
+        AutopilotNode(autopilot, 0).step(None, np.zeros(3))  # loads the compiled kernels before time starts to count
         node = AutopilotNode(autopilot, time.time_ns() // STEP_NS * STEP_NS)
         body = settings.vehicle
         vehicle = VehicleView(zenoh, options.keys, (body.length_m, body.width_m), body.roof_height_m)

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from companion.__main__ import app
+from companion.app import app
 from companion.config.companion import CompanionConfig
 from link.program.cli import run_app
 from link.program.toml_config import load_config

@@ -15,7 +15,7 @@ from typing import IO, Self
 
 import psutil  # type: ignore[import-untyped]  # it has no annotations
 
-from link.program.cli import PATIENCE
+from link.program.interrupts import COMPILING
 from scenarios.processes.programs import MODULES
 
 DEADLINE_S = 90.0
@@ -92,7 +92,7 @@ class Program:
     @property
     def told(self) -> list[str]:
         """The lines on stderr, but for the one that a slow computer's user is to be patient."""
-        return [line for line in self.err.all if not line.endswith(PATIENCE)]
+        return [line for line in self.err.all if not line.endswith(COMPILING)]
 
     def send(self, number: signal.Signals) -> None:
         self._process.send_signal(number)

@@ -11,8 +11,8 @@ import pytest
 import typer
 from typer.main import get_command
 
-from companion.__main__ import app as companion_app
-from scenarios.ground_vehicle import app as vehicle_app
+from companion.app import app as companion_app
+from scenarios.commands.ground_vehicle import app as vehicle_app
 from scenarios.processes.programs import free_tcp_endpoint, free_udp_port
 from tests.integration.programs import DEADLINE_S, Programs
 

@@ -9,21 +9,21 @@ from pathlib import Path
 
 import pytest
 
-import companion.__main__
-import companion.eyes.__main__
-import scenarios.__main__
-import scenarios.ground_vehicle
-import sim_autopilot.__main__
+import companion.app
+import companion.eyes.app
+import scenarios.app
+import scenarios.commands.ground_vehicle
+import sim_autopilot.app
 from link.program.cli import run_app
 from scenarios.processes.programs import MODULES
 from tests.integration.programs import Programs
 
 APPS = {
-    "companion": companion.__main__.app,
-    "ground-vehicle": scenarios.ground_vehicle.app,
-    "pad-detector": companion.eyes.__main__.app,
-    "scenarios": scenarios.__main__.app,
-    "sim-autopilot": sim_autopilot.__main__.app,
+    "companion": companion.app.app,
+    "ground-vehicle": scenarios.commands.ground_vehicle.app,
+    "pad-detector": companion.eyes.app.app,
+    "scenarios": scenarios.app.app,
+    "sim-autopilot": sim_autopilot.app.app,
 }
 
 FREE = "--mavlink udpin:127.0.0.1:0"

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from cryptography import x509
 
-from companion.__main__ import app
+from companion.app import app
 from companion.runtime.keys import NAMES
 from link.mavlink.signing import read_key
 from link.program.cli import run_app

@@ -17,10 +17,11 @@ from companion.config.estimation import EstimatorKind
 from companion.config.planning import SolverKind
 from companion.runtime.build import build_node
 from link.errors import UserError
-from link.program.cli import EXIT_USER_ERROR, run_app
+from link.program.cli import run_app
+from link.program.exit_codes import EXIT_USER_ERROR
 from link.program.extras import EXTRAS
 from link.zenoh.keys import Keys
-from scenarios.__main__ import app
+from scenarios.app import app
 
 ROOT = Path(__file__).parents[3]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
@@ -33,9 +34,9 @@ class Blocker:
             raise ModuleNotFoundError(f"{{name}} is of an extra")
 
 sys.meta_path.insert(0, Blocker())
-import companion.eyes.__main__
+import companion.eyes.app
 import companion.check.command, companion.runtime.loop, companion.recording.folder
-import scenarios.__main__, scenarios.ground_vehicle, scenarios.vehicle_sources.loop
+import scenarios.app, scenarios.commands.ground_vehicle, scenarios.vehicle_sources.loop
 import scenarios.wire.run, scenarios.wire.world, sim_autopilot.runtime.run
 """
 

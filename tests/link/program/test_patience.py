@@ -1,4 +1,4 @@
-"""The word where a start takes long."""
+"""The word where something takes long."""
 
 import threading
 
@@ -8,7 +8,7 @@ from link.program.cli import Patience
 
 
 def test_a_slow_start_is_told_on_stderr_and_a_quick_one_is_not(capfd: pytest.CaptureFixture[str]) -> None:
-    with Patience("tool", after_s=30.0):
+    with Patience("tool", "waiting for the drone", after_s=30.0):
         pass
     assert capfd.readouterr().err == ""
     with Patience("tool", "waiting for the drone", after_s=0.0):

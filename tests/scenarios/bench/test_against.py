@@ -5,8 +5,9 @@ from pathlib import Path
 import pytest
 
 from link.errors import UserError
-from link.program.cli import EXIT_USER_ERROR, run_app
-from scenarios.__main__ import app
+from link.program.cli import run_app
+from link.program.exit_codes import EXIT_USER_ERROR
+from scenarios.app import app
 from scenarios.bench.against import HERE, Pair, against_lines, against_table, check_pairs, fly_pairs
 
 

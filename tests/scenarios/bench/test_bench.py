@@ -9,7 +9,7 @@ import pytest
 import companion.runtime.node
 import sim_autopilot.runtime.node
 from link.program.cli import run_app
-from scenarios.__main__ import app
+from scenarios.app import app
 from scenarios.bench.bench import Budget, text_lines
 from scenarios.bench.recording import FlownInputs, recording_cost
 from scenarios.catalogue.catalogue import load_scenario

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 import pytest
 from typer.testing import CliRunner
 
-from scenarios.__main__ import app
+from scenarios.app import app
 from scenarios.attack import crafted, spoofs
 from scenarios.attack.attempt import Attempt
 

@@ -4,18 +4,18 @@ import pytest
 import typer
 from typer.main import get_command
 
-from companion.__main__ import app as companion_app
+from companion.app import app as companion_app
 from link.errors import UserError
 from link.messages import Command, CommandReply, Order
 from link.payloads import json_messages
 from link.zenoh.keys import Keys
 from link.zenoh.session import ZenohOptions, open_session
-from scenarios.__main__ import app as scenarios_app
+from scenarios.app import app as scenarios_app
 from scenarios.commands import operator as operator_command
+from scenarios.commands.ground_vehicle import app as vehicle_app
 from scenarios.commands.operator import send_order
-from scenarios.ground_vehicle import app as vehicle_app
 from scenarios.processes.programs import free_tcp_endpoint
-from sim_autopilot.__main__ import app as autopilot_app
+from sim_autopilot.app import app as autopilot_app
 
 KEYS = Keys()
 ACCEPTED = json_messages.encode(CommandReply(accepted=True, reason=""))

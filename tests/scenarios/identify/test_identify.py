@@ -7,7 +7,7 @@ from typer.testing import CliRunner
 from companion.autopilots.px4 import Px4Driver
 from companion.core.data import Array
 from link.errors import UserError
-from scenarios.__main__ import app
+from scenarios.app import app
 from scenarios.identify.figures import figures
 from scenarios.identify.fit import fit_law
 from scenarios.identify.flying import fly_stand_in

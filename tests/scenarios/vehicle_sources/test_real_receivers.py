@@ -246,5 +246,5 @@ def test_receivers_load_neither_simulation_nor_numerics() -> None:
         f"scenarios.vehicle_sources.{name}" for name in ("loop", "pad", "channel", "nmea", "gpsd", "mavlink")
     )
     heavy = '{"numba", "scipy", "polars", "matplotlib", "companion", "sim_autopilot", "scenarios.catalogue.catalogue"}'
-    script = f"import sys, scenarios.ground_vehicle, {modules}; sys.exit(bool({heavy} & set(sys.modules)))"
+    script = f"import sys, scenarios.commands.ground_vehicle, {modules}; sys.exit(bool({heavy} & set(sys.modules)))"
     assert subprocess.run([sys.executable, "-c", script], check=False, timeout=DEADLINE_S).returncode == 0

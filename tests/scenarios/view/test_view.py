@@ -15,7 +15,7 @@ from link.payloads.checks import PayloadError
 from link.payloads.decklander_msgs import floats, ros_message
 from link.records import replace
 from link.zenoh.keys import Keys
-from scenarios.__main__ import app
+from scenarios.app import app
 from scenarios.tracks.roads import road_of
 from scenarios.view.history import NAMES, History
 from scenarios.view.marks import drone_label

@@ -203,7 +203,7 @@ def test_the_deck_has_the_vehicles_motion_and_its_pads_height(companion: Compani
 
 def test_help_loads_no_numerics() -> None:
     program = (
-        "import sys; from link.program.cli import run_app; from sim_autopilot.__main__ import app; "
+        "import sys; from link.program.cli import run_app; from sim_autopilot.app import app; "
         "run_app('sim-autopilot', app, ['--help']); print({'numpy', 'numba', 'zenoh', 'pymavlink'} & set(sys.modules))"
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)

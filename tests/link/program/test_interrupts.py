@@ -1,0 +1,84 @@
+"""Ctrl-C ends a program with exit code 130 and no traceback, whatever it is in."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from link.program.interrupts import COMPILING
+from scenarios.processes.programs import MODULES
+
+_WHILE_IMPORTING = """
+import os, signal
+try:
+    os.kill(os.getpid(), signal.SIGINT)
+except BaseException:  # as some modules do
+    pass
+from tests.link.program.test_cli import program
+app = program([])
+"""
+
+_WHILE_COMPILING = """
+import os, signal
+from numba.core import event
+from link.compiled import kernel
+from link.program.interrupts import take_interrupts
+
+class Interrupt(event.Listener):
+    def on_start(self, event):
+        os.kill(os.getpid(), signal.SIGINT)
+    def on_end(self, event):
+        pass
+
+take_interrupts("tool")
+event.register("numba:run_pass", Interrupt())
+kernel(lambda one: one + one)(1.0)
+"""
+
+_AFTERWARDS = """
+import os, signal
+from link.compiled import kernel
+from link.program.interrupts import take_interrupts
+
+take_interrupts("tool")
+kernel(lambda one: one + one)(1.0)
+kernel(lambda one: one * one)(1.0)
+try:
+    os.kill(os.getpid(), signal.SIGINT)
+except KeyboardInterrupt:
+    print("in order")
+"""
+
+
+def run(code: str) -> tuple[int, str, str]:
+    """Return exit code and output of a process that runs `code`."""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    return done.returncode, done.stdout, done.stderr
+
+
+def test_ctrl_c_while_a_program_is_imported_ends_it_without_a_word(tmp_path: Path) -> None:
+    (tmp_path / "interrupted.py").write_text(_WHILE_IMPORTING)
+    code = f"import sys; sys.path.insert(0, {str(tmp_path)!r}); from link.program.start import start"
+    assert run(f"{code}; start('tool', 'interrupted')") == (130, "", "")
+
+
+def test_ctrl_c_while_numerics_are_compiled_ends_the_program() -> None:
+    assert run(_WHILE_COMPILING) == (130, "", f"tool: {COMPILING}\n")
+
+
+def test_compiling_is_told_once_and_ctrl_c_after_it_ends_in_order() -> None:
+    assert run(_AFTERWARDS) == (0, "in order\n", f"tool: {COMPILING}\n")
+
+
+@pytest.mark.parametrize("module", MODULES.values())
+def test_a_program_settles_ctrl_c_before_it_imports_what_takes_time(module: str) -> None:
+    main = module if module == "scenarios.ground_vehicle" else f"{module}.__main__"
+    code = f"import sys, {main}; print([one for one in ('typer', 'numpy', 'numba', 'pydantic') if one in sys.modules])"
+    assert run(code) == (0, "[]\n", "")
+
+
+def test_a_program_that_is_to_ignore_ctrl_c_goes_on_ignoring_it() -> None:
+    code = "import signal; signal.signal(signal.SIGINT, signal.SIG_IGN); from link.program.interrupts import *; "
+    told = run(f"{code} take_interrupts('tool'); print(signal.getsignal(signal.SIGINT) is signal.SIG_IGN)")
+    assert told == (0, "True\n", "")
