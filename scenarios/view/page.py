@@ -5,21 +5,24 @@ another site opens in a browser here.
 """
 
 import io
+import logging
 import math
 import re
 import signal
 import sys
 import time
+from collections.abc import Callable
 from contextlib import redirect_stdout
-from functools import partial
+from http import HTTPStatus
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from types import TracebackType
 from typing import Any, Self
 
 import viser
-import viser.infra
 import websockets.asyncio.server
+from websockets.asyncio.server import ServerConnection
+from websockets.datastructures import Headers
+from websockets.http11 import Request, Response
 
 from companion.config.companion import CompanionConfig
 from scenarios.simulation.vehicle_node import plan_of
@@ -41,11 +44,11 @@ _STYLE = """@media (max-width: 48em) {
 }"""
 
 
-def write_client_page(folder: Path) -> None:
-    """Write the page into `folder`."""
+def client_page() -> bytes:
+    """Return the page: viser's under our name. It is never a file, which a process that is killed would leave."""
     plain = (Path(viser.__file__).parent / "client" / "build" / "index.html").read_text(encoding="utf-8")
     head = f'<title>Decklander</title><link rel="icon" href="{_ICON}"><style>{_STYLE}</style>'
-    (folder / "index.html").write_text(plain.replace("<title>Viser</title>", head), encoding="utf-8")
+    return plain.replace("<title>Viser</title>", head).encode()
 
 
 _PERIOD_S = 0.05
@@ -55,6 +58,7 @@ _PLOTS_EVERY = 10
 _TRAIL_ROWS, _TRAIL_EVERY = 600, 3
 _STALE_S = 3.0
 _LOOPBACK = "127.0.0.1"
+_PAGE_PATHS = ("/", "/index.html")
 _OWN_ORIGINS = (None, re.compile(r"http://(127\.0\.0\.1|localhost|\[::1\])(:[0-9]+)?"))
 """Of the page by any name of loopback, at the port of a tunnel, too; what is no browser has none."""
 
@@ -70,9 +74,7 @@ class Page:
 
     def __init__(self, source: LiveSource | RecordedSource, road: Road | None, port: int) -> None:
         self._source = source
-        self._files = TemporaryDirectory(prefix="decklander-view-")
-        write_client_page(Path(self._files.name))
-        self._server = open_server(port, Path(self._files.name))
+        self._server = open_server(port)
         descent = CompanionConfig().descent if road is None else road.scenario.system.companion.descent
         self._scene = Scene(self._server, descent)
         if road is not None:
@@ -96,7 +98,6 @@ class Page:
     ) -> None:
         with redirect_stdout(io.StringIO()):  # nor has its end anything to say
             self._server.stop()
-        self._files.cleanup()
 
     @property
     def address(self) -> str:
@@ -158,25 +159,32 @@ class Page:
         return now_s - self._stamp_seen_s > _STALE_S
 
 
-def open_server(port: int, files: Path) -> viser.ViserServer:
+def open_server(port: int) -> viser.ViserServer:
     """Return viser's server on loopback, at a later port if `port` is taken, at any free one if it is 0.
 
-    It takes WebSockets of its own page only: viser itself does not ask where a browser got the page from.
-
-    Args:
-        port: where.
-        files: folder of the page, in place of viser's.
+    It takes WebSockets of its own page only: viser itself does not ask where a browser got the page from. Of who speaks
+    neither HTTP nor WebSocket nothing is written.
     """
-    plain, plain_http = websockets.asyncio.server.serve, viser.infra.WebsockServer
-
-    def our_http(**options: Any) -> viser.infra.WebsockServer:
-        return plain_http(**options | {"http_server_root": files})
-
-    websockets.asyncio.server.serve = partial(plain, origins=_OWN_ORIGINS)  # type: ignore[assignment,misc]  # for viser
-    viser.infra.WebsockServer = our_http  # type: ignore[assignment,misc]  # likewise
+    plain = websockets.asyncio.server.serve
+    logging.getLogger("websockets").setLevel(logging.CRITICAL)
+    websockets.asyncio.server.serve = _serving(plain, client_page())  # type: ignore[assignment,misc]  # for viser
     try:
         with redirect_stdout(io.StringIO()):  # it has a banner of its own
             return viser.ViserServer(host=_LOOPBACK, port=port, verbose=False)
     finally:  # for everybody else
         websockets.asyncio.server.serve = plain  # type: ignore[misc]
-        viser.infra.WebsockServer = plain_http  # type: ignore[misc]
+
+
+def _serving(serve: Callable[..., Any], page: bytes) -> Callable[..., Any]:
+    """Return `serve` with our page in place of viser's, for WebSockets of that page."""
+
+    def our_serve(*arguments: Any, process_request: Callable[..., Response | None], **options: Any) -> Any:
+        def answer(connection: ServerConnection, request: Request) -> Response | None:
+            if "Upgrade" in request.headers or request.path.partition("?")[0] not in _PAGE_PATHS:
+                return process_request(connection, request)
+            headers = Headers({"Content-Type": "text/html; charset=utf-8", "Content-Length": str(len(page))})
+            return Response(HTTPStatus.OK, "OK", headers, page)
+
+        return serve(*arguments, process_request=answer, origins=_OWN_ORIGINS, **options)
+
+    return our_serve

@@ -1,5 +1,7 @@
 """Who may talk to the page, which can fly the drone."""
 
+import socket
+import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 from urllib.request import urlopen
@@ -10,16 +12,14 @@ from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 from websockets.typing import Origin
 
-from scenarios.view.page import open_server, write_client_page
+from scenarios.view.page import open_server
 
 WAIT_S = 20.0
 
 
 @pytest.fixture(scope="module")
-def port(tmp_path_factory: pytest.TempPathFactory) -> Iterator[int]:
-    files = tmp_path_factory.mktemp("page")
-    write_client_page(files)
-    server = open_server(0, files)
+def port() -> Iterator[int]:
+    server = open_server(0)
     yield server.get_port()
     server.stop()
 
@@ -48,10 +48,9 @@ def listening() -> set[tuple[str, int]]:
     return {tuple(one.laddr) for one in psutil.Process().net_connections(kind="tcp") if one.status == "LISTEN"}
 
 
-def test_server_listens_on_one_port_of_loopback_and_on_no_other(tmp_path: Path) -> None:
-    write_client_page(tmp_path)
+def test_server_listens_on_one_port_of_loopback_and_on_no_other() -> None:
     before = listening()
-    server = open_server(0, tmp_path)
+    server = open_server(0)
     assert listening() - before == {("127.0.0.1", server.get_port())}
     server.stop()
 
@@ -62,3 +61,26 @@ def test_page_has_our_title_and_icon_and_leaves_room_on_a_phone(port: int) -> No
     assert "<title>Decklander</title>" in page
     assert 'rel="icon"' in page
     assert "max-height: 40%" in page
+
+
+def test_page_leaves_no_file_behind(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    server = open_server(0)
+    try:
+        with urlopen(f"http://127.0.0.1:{server.get_port()}/", timeout=WAIT_S) as answer:
+            assert answer.status == 200
+        assert list(tmp_path.iterdir()) == []
+    finally:
+        server.stop()
+
+
+def test_who_speaks_another_protocol_is_no_line_on_the_terminal(caplog: pytest.LogCaptureFixture) -> None:
+    server = open_server(0)  # one that has not answered anybody yet
+    try:
+        with socket.create_connection(("127.0.0.1", server.get_port()), timeout=WAIT_S) as stranger:
+            stranger.sendall(b"no request\r\n\r\n")
+            while stranger.recv(1024):
+                pass
+        assert caplog.records == []
+    finally:
+        server.stop()
