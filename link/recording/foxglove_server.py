@@ -11,6 +11,7 @@ DEFAULT_PORT = 8765
 
 _BACKLOG = 1000  # messages that wait for a slow reader; then it misses the oldest
 _HOST = "127.0.0.1"
+_QUIET = "CRITICAL"  # of whoever speaks another protocol to the port it would write on the terminal
 
 
 class FoxgloveServer:
@@ -27,6 +28,7 @@ class FoxgloveServer:
         require("foxglove", "--foxglove")
         import foxglove  # noqa: PLC0415 (it is of an extra)
 
+        foxglove.set_log_level(_QUIET)
         self._library = foxglove
         self._context = foxglove.Context()
         self._channels: dict[str, Any] = {}

@@ -7,8 +7,11 @@ from typing import Annotated
 
 import typer
 
+from link.errors import UserError
 from link.program.cli import JsonOption
 from scenarios.commands.options import SeedOption
+
+_PAIRS = 15
 
 
 def register(app: typer.Typer) -> None:
@@ -24,17 +27,22 @@ def bench_command(
         Path | None,
         typer.Option("--against", metavar="FOLDER", help="Only fly in turn with another checkout: which is faster?"),
     ] = None,
-    pairs: Annotated[int, typer.Option("--pairs", help="Landings on each, with --against.")] = 15,
+    pairs: Annotated[
+        int | None, typer.Option("--pairs", help=f"Landings on each, with --against [default: {_PAIRS}].")
+    ] = None,
     as_json: JsonOption = False,
 ) -> None:
     """Measure step times, speed, memory and start-up against their budgets; takes about a minute."""
-    from scenarios.bench.bench import bench, text_lines
     from scenarios.catalogue.catalogue import load_scenario
     from scenarios.catalogue.world_names import run_seed
 
+    if against is None and pairs is not None:
+        raise UserError(f"--pairs {pairs} counts landings on two checkouts: give --against FOLDER, or leave it out")
     if against is not None:
-        _bench_against(against, name, pairs, run_seed(name, seed), as_json=as_json)
+        _bench_against(against, name, _PAIRS if pairs is None else pairs, run_seed(name, seed), as_json=as_json)
         return
+    from scenarios.bench.bench import bench, text_lines
+
     table = bench(load_scenario(name), run_seed(name, seed), lambda what: _announce(what, as_json=as_json))
     text = json.dumps(table, indent=2) if as_json else "\n".join(text_lines(table))
     sys.stdout.write(f"{text}\n")

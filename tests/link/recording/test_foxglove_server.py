@@ -1,6 +1,7 @@
 """Foxglove's server as one of its clients sees it, by the published protocol."""
 
 import json
+import socket
 import struct
 from typing import Any
 
@@ -53,3 +54,13 @@ def test_port_in_use_is_a_users_error() -> None:
     with pytest.raises(UserError, match="the port is in use; choose another port"):
         FoxgloveServer(server.port)
     server.close()
+
+
+def test_who_speaks_another_protocol_is_no_line_on_the_terminal(capfd: pytest.CaptureFixture[str]) -> None:
+    server = FoxgloveServer(0)
+    with socket.create_connection(("127.0.0.1", server.port), timeout=DEADLINE_S) as stranger:
+        stranger.sendall(b"no request\r\n\r\n")
+        while stranger.recv(1024):
+            pass
+    server.close()
+    assert capfd.readouterr() == ("", "")
