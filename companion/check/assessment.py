@@ -27,6 +27,7 @@ def assess(
     config: CompanionConfig,
     *,
     launches: bool = False,
+    expects_vehicle: bool = False,
 ) -> list[Finding]:
     """Return the lines of the check.
 
@@ -36,6 +37,7 @@ def assess(
         speed_m_s: of the vehicle, for which the parameters are judged.
         config: the companion's, whose limits are to hold.
         launches: the drone is to leave a vehicle that drives, too.
+        expects_vehicle: it was said where the vehicle is met, so that its silence fails.
     """
     found = [_firmware(autopilot, config.autopilot.kind), _readiness(autopilot), _origin(autopilot)]
     found += [_heights(autopilot, config.autopilot.geoid_height_m), _clock(autopilot)]
@@ -45,7 +47,7 @@ def assess(
     if autopilot.autopilot_id in FIRMWARES:
         rules = FIRMWARES[autopilot.autopilot_id].rules_for(config.descent.sink.rate_max_m_s, launches=launches)
         found += judge(rules, autopilot.parameters, speed_m_s)
-    return found if vehicle is None else [*found, *assess_vehicle(vehicle, config)]
+    return found if vehicle is None else [*found, *assess_vehicle(vehicle, config, is_expected=expects_vehicle)]
 
 
 def is_ready(findings: Sequence[Finding]) -> bool:
@@ -156,12 +158,13 @@ _FIX_AGE_SHARE = 0.5  # of what aborts a landing
 _FIX_STD_GOOD_M = 0.3
 
 
-def assess_vehicle(seen: VehicleFacts, config: CompanionConfig) -> list[Finding]:
+def assess_vehicle(seen: VehicleFacts, config: CompanionConfig, *, is_expected: bool = False) -> list[Finding]:
     """Return the lines on the vehicle.
 
     Args:
         seen: as received.
         config: the companion's, whose limits are to hold.
+        is_expected: it was said where it is met, so that its silence fails.
     """
     if config.silent_vehicle is not None:
         return [pass_line("vehicle", "tells nothing, as the configuration says")]
@@ -170,7 +173,8 @@ def assess_vehicle(seen: VehicleFacts, config: CompanionConfig) -> list[Finding]
         return [make_finding("vehicle", f"refused: {seen.fix_refused_why}", Level.FAIL, advice)]
     if seen.rate_hz <= 0.0:
         advice = "start the ground vehicle, or check --ns, --vehicle and -e"
-        return [make_finding("vehicle", f"nothing on {seen.key}", Level.WARN, advice)]
+        level = Level.FAIL if is_expected else Level.WARN
+        return [make_finding("vehicle", f"nothing on {seen.key}", level, advice)]
     refused = "not described" if seen.pad_refused_why is None else f"refused: {seen.pad_refused_why}"
     pad = make_finding(
         "vehicle pad",

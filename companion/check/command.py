@@ -65,8 +65,10 @@ def check(
     names: NameArguments,
     endpoints: ZenohArguments,
 ) -> int:
-    """Read the autopilot and the vehicle, and say what to change before a landing; exit code 1 when something fails."""
-    from companion.check.findings import read_kept
+    """Read the autopilot and the vehicle, and say what to change before a landing; exit code 1 when something fails.
+
+    A vehicle that is silent fails only where -e, -l, --zenoh-config or --multicast-scouting says where it is met.
+    """
     from companion.config.companion import CompanionConfig
     from companion.runtime.options import open_links
     from link.program.settings import COMPANION, load_settings
@@ -77,7 +79,7 @@ def check(
         raise UserError(f"--keep {keep_file}: is a folder; name a file in it")
     settings = load_settings(config, CompanionConfig, COMPANION, changes)
     signing = mavlink.signing()
-    back = None if restore is None else read_kept(restore)
+    back = None if restore is None else _values_to_restore(restore)
     options = endpoints.options()
     with open_transport(mavlink.mavlink) as transport, open_session(options) as zenoh:
         session = _find(transport, mavlink, signing, timeout)
@@ -91,6 +93,7 @@ def check(
             speed_m_s=speed_max,
             config=settings,
             launches=launch,
+            expects_vehicle=endpoints.are_given,
             open_links=open_links(options, mavlink.mavlink, signs=signing is not None),
         )
         findings = _look(session, ask)
@@ -98,6 +101,15 @@ def check(
             set_advised(session, findings, keep_file, asks=not yes)
             findings = _look(session, ask)
     return _show(findings, speed_max, as_json=as_json)
+
+
+def _values_to_restore(path: Path) -> dict[str, float]:
+    from companion.check.findings import read_kept
+
+    values = read_kept(path)
+    if not values:
+        raise UserError(f"--restore {path}: holds no parameters; name the file that --write kept")
+    return values
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -110,6 +122,7 @@ class _Question:
     speed_m_s: float
     config: "CompanionConfig"
     launches: bool
+    expects_vehicle: bool
     open_links: tuple[str, ...]
 
 
@@ -131,7 +144,14 @@ def _look(session: "CheckSession", asked: _Question) -> "list[Finding]":
 
     typer.echo(f"found it; listening to it and to the vehicle for {asked.duration_s:g} s", err=True)
     vehicle, detector = session.listen(asked.duration_s, asked.zenoh, asked.keys, asked.config.integrity)
-    seen = assess(session.reader.facts(), vehicle, asked.speed_m_s, asked.config, launches=asked.launches)
+    seen = assess(
+        session.reader.facts(),
+        vehicle,
+        asked.speed_m_s,
+        asked.config,
+        launches=asked.launches,
+        expects_vehicle=asked.expects_vehicle,
+    )
     return [*seen, *judge_detector(detector, asked.speed_m_s, asked.config), *assess_links(asked.open_links)]
 
 
@@ -156,12 +176,28 @@ def set_advised(session: "CheckSession", findings: "list[Finding]", keep_file: P
     known = session.reader.facts().parameters
     for name, value in advised.items():
         typer.echo(f"{name}: {known[name]:g} -> {value:g}", err=True)
-    if asks and not typer.confirm(f"write these {len(advised)} parameters?", err=True):
+    if asks and not _is_confirmed(f"write these {len(advised)} parameters?"):
         typer.echo("nothing was written", err=True)
         return
     keep(keep_file, {name: known[name] for name in advised})
     typer.echo(f"the values before are in {keep_file}: companion check --restore {keep_file}", err=True)
     _write(session, advised)
+
+
+def _is_confirmed(question: str) -> bool:
+    """Return what the user answers.
+
+    Raises:
+        UserError: nobody can answer.
+    """
+    try:
+        if sys.stdin is not None:
+            return typer.confirm(question, err=True)
+    except typer.Abort as error:
+        if not isinstance(error.__context__, EOFError):  # but Ctrl-C
+            raise
+        sys.stderr.write("\n")  # the question's line has no end yet
+    raise UserError("--write asks before it writes, and nobody can answer here: add --yes; nothing was written")
 
 
 def _write(session: "CheckSession", values: dict[str, float]) -> None:

@@ -98,6 +98,11 @@ class ZenohArguments(OptionGroup):
     zenoh_config: _ZenohConfigOption = None
     insecure: _InsecureOption = False
 
+    @property
+    def are_given(self) -> bool:
+        """Whether they say where others are, so that silence is a fault."""
+        return bool(self.connect or self.listen or self.zenoh_config or self.multicast)
+
     def options(self, *, listens: bool = False) -> ZenohOptions:
         """Return what they say; nothing connects to the default endpoint.
 
@@ -107,7 +112,7 @@ class ZenohArguments(OptionGroup):
             UserError: the mode or an endpoint is not one.
         """
         connect, listen = tuple(self.connect or ()), tuple(self.listen or ())
-        if not (connect or listen or self.zenoh_config or self.multicast):
+        if not self.are_given:
             here = () if self.mode == "client" else (DEFAULT_ENDPOINT,)
             connect, listen = ((), here) if listens else ((DEFAULT_ENDPOINT,), ())
         return ZenohOptions(

@@ -1,6 +1,7 @@
 """The lines of the check: everything in order passes, and each thing amiss is told by its own line."""
 
 import math
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -14,6 +15,7 @@ from link.errors import UserError
 from link.mavlink.dialect import mavlink
 from link.program.toml_config import validate
 from link.records import replace
+from link.zenoh.command_line import ZenohArguments
 from tests.companion.check.test_rules import ARDUCOPTER_46, PX4_DEFAULTS
 from tests.companion.world import configured
 
@@ -135,6 +137,28 @@ def test_vehicle_amiss_is_told(changed: dict[str, Any], line: str, level: Level)
     by_name = {one.name: one for one in assess(GOOD, replace(VEHICLE, **changed), 10.0, CONFIG)}
     assert by_name[line].level is level
     assert by_name[line].advice
+
+
+def test_silent_vehicle_fails_where_it_was_said_where_it_is_met() -> None:
+    silent = replace(VEHICLE, rate_hz=0.0)
+    for is_expected in (False, True):
+        findings = assess(GOOD, silent, 10.0, CONFIG, expects_vehicle=is_expected)
+        assert is_ready(findings) is not is_expected
+
+
+@pytest.mark.parametrize(
+    ("given", "are_given"),
+    [
+        ({}, False),
+        ({"mode": "client"}, False),
+        ({"connect": ["tcp/127.0.0.1:1"]}, True),
+        ({"listen": ["tcp/127.0.0.1:1"]}, True),
+        ({"zenoh_config": Path("z.json5")}, True),
+        ({"multicast": True}, True),
+    ],
+)
+def test_endpoints_say_where_a_vehicle_is_met(given: dict[str, Any], *, are_given: bool) -> None:
+    assert ZenohArguments(**given).are_given is are_given
 
 
 def test_heading_that_follows_the_course_passes() -> None:

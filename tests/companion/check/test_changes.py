@@ -49,3 +49,13 @@ def test_parameters_are_written_only_after_a_yes_and_a_no_is_no_error(
     set_advised(cast("Any", session), findings, tmp_path / "before.json", asks=True)
     assert written == ({"A": 2.0} if is_written else {})
     assert (tmp_path / "before.json").exists() is is_written
+
+
+def test_question_that_nobody_can_answer_is_a_users_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    session = SimpleNamespace(reader=SimpleNamespace(facts=lambda: SimpleNamespace(parameters={"A": 1.0})))
+    findings = [Finding(name="A", level=Level.WARN, found="1", advice="A", set_to=2.0)]
+    for stdin in (io.StringIO(""), None):
+        monkeypatch.setattr("sys.stdin", stdin)
+        with pytest.raises(UserError, match="add --yes"):
+            set_advised(cast("Any", session), findings, tmp_path / "before.json", asks=True)
+    assert not (tmp_path / "before.json").exists()
