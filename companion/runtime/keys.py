@@ -35,8 +35,11 @@ def keys(
 
     Give each computer the file ca.pem and its own two files, and nobody ca.key.
     """
-    from link.zenoh.certificates import Authority, write_secret
+    from link.zenoh.certificates import Authority, check_host, write_secret
 
+    for option, given in (("--host", host), ("--name", name)):
+        for one in given or ():
+            check_host(option, one)
     authority = Authority(folder, days)
     for one in name or NAMES:
         authority.issue(one, ("localhost", "127.0.0.1", *(host or ())))

@@ -23,6 +23,8 @@ _NETWORK = re.compile(
 _LISTENERS = ("udpin", "tcpin")
 _KINDS = (*_LISTENERS, "udpout", "tcp")
 _PORT_MAX = 65535
+MAVLINK_PORT = 14540
+"""PX4's, for a companion."""
 _BAUD_DEFAULT = 57600  # the usual telemetry radio's, named in hints only
 _BAUD_MAX = 12_000_000
 _OTHER_NAMES = {"udp": "udpin", "udpserver": "udpin", "udpclient": "udpout", "tcpout": "tcp", "tcpclient": "tcp"}
@@ -57,11 +59,12 @@ class SerialDevice:
         return f"{self.path},{self.baud}"
 
 
-def parse_device(device: str) -> NetworkDevice | SerialDevice:
+def parse_device(device: str, usual_port: int = MAVLINK_PORT) -> NetworkDevice | SerialDevice:
     """Takes a device string apart.
 
     Args:
         device: in one of `FORMS`; a listener's port may be 0, for one that the system chooses.
+        usual_port: of what is spoken there, named in hints only.
 
     Returns:
         Its parts.
@@ -73,10 +76,10 @@ def parse_device(device: str) -> NetworkDevice | SerialDevice:
         return _serial(device)
     match = _NETWORK.fullmatch(device)
     if match is None:
-        raise UserError(f"device {device!r} has no known form; {_hint(device)}")
+        raise UserError(f"device {device!r} has no known form; {_hint(device, usual_port)}")
     kind, host = match["kind"].lower(), match["host"].strip("[]")
     if kind not in _KINDS or not host:
-        raise UserError(f"device {device!r} has no known form; {_hint(device)}")
+        raise UserError(f"device {device!r} has no known form; {_hint(device, usual_port)}")
     own_port = match["own_port"]
     if own_port is not None and kind != "udpout":
         raise UserError(f"device {device!r} has no known form; only udpout takes a port of its own")
@@ -117,7 +120,7 @@ def _port(device: str, kind: str, text: str) -> int:
     raise UserError(f"device {device!r}: {text!r} is no port; write a number from {max(port_min, 1)} to {_PORT_MAX}")
 
 
-def _hint(device: str) -> str:
+def _hint(device: str, usual_port: int) -> str:
     """The valid form that comes nearest."""
     kind, _, rest = device.partition(":")
     kind = kind.lower()
@@ -126,5 +129,5 @@ def _hint(device: str) -> str:
         return f"write {FORMS}"
     host, colon, port = rest.rpartition(":")
     if not colon:
-        host, port = ("127.0.0.1", rest) if rest.isdigit() else (rest, "14540")
-    return f"did you mean {near[0]}:{host or '127.0.0.1'}:{port or '14540'}?"
+        host, port = ("127.0.0.1", rest) if rest.isdigit() else (rest, "")
+    return f"did you mean {near[0]}:{host or '127.0.0.1'}:{port or usual_port}?"

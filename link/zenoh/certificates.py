@@ -6,6 +6,7 @@ on the computer on which it was made: whoever has it can make further certificat
 
 import ipaddress
 import os
+import re
 from collections.abc import Sequence
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
@@ -18,6 +19,7 @@ from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID
 from link.errors import UserError
 
 AUTHORITY = "ca"
+_HOST_NAME = re.compile(r"[A-Za-z0-9_.*-]+")
 _NOT_BEFORE = timedelta(days=1)  # a clock that is not yet set by GNSS or NTP may be behind
 
 
@@ -117,12 +119,25 @@ def _ec_key(pem: bytes) -> ec.EllipticCurvePrivateKey:
     return key
 
 
+def check_host(option: str, host: str) -> None:
+    """Find out whether a certificate can be for `host`, before any is made.
+
+    Raises:
+        UserError: it cannot, which names the option.
+    """
+    try:
+        _general_name(host)
+    except ValueError:
+        raise UserError(
+            f"{option} {host!r} is no name or address of a host: write one such as drone.local or 192.168.4.1"
+        ) from None
+
+
 def _general_name(host: str) -> x509.GeneralName:
     try:
         return x509.IPAddress(ipaddress.ip_address(host))
     except ValueError:
         pass
-    try:
-        return x509.DNSName(host)
-    except ValueError as error:
-        raise UserError(f"--host {host!r} is no name or address of a host: write one such as 192.168.4.1") from error
+    if _HOST_NAME.fullmatch(host) is None:
+        raise ValueError(f"{host!r} is no name of a host")
+    return x509.DNSName(host)

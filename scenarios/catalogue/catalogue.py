@@ -56,6 +56,7 @@ _DEFAULT_PRESETS = {
 _PLAIN_OPTIONS = ("firmware", "detector", "telemetry")
 _RUN_OPTIONS = ("start", "place")
 _SUFFIX = ".toml"
+_LIKENESS = 0.6  # of a word that was meant; beside a section that there is not, a preset must be the very one
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -119,7 +120,7 @@ def _with_option(table: Table, option: str, whole: str) -> Table:
     sections = (*_DEFAULT_PRESETS, *_PLAIN_OPTIONS, *_RUN_OPTIONS)
     if not equals or section not in sections:
         meant = _meant(section, preset)
-        near = f"did you mean +{meant}?" if meant else f"write one of {', '.join(sections)} with =PRESET"
+        near = f"did you mean +{meant}?" if meant else f"there are {', '.join(sections)}, each with =PRESET"
         raise UserError(f"{whole}: no preset is called '{option}'; {near} (`scenarios list` shows them)")
     return merge(table, {"run": {section: preset}}) if section in _RUN_OPTIONS else table | {section: preset}
 
@@ -130,7 +131,7 @@ def _meant(section: str, preset: str) -> str:
     if preset and near:
         return f"{near[0]}={preset}"
     named = {name: f"{one}={name}" for one in _DEFAULT_PRESETS for name in _presets(one)}
-    near = difflib.get_close_matches(preset or section, named, n=1)
+    near = difflib.get_close_matches(preset or section, named, n=1, cutoff=1.0 if preset else _LIKENESS)
     return named[near[0]] if near else ""
 
 

@@ -4,11 +4,12 @@ from collections.abc import Callable
 from pathlib import Path
 
 from link.errors import UserError
-from link.transports.device import NetworkDevice, parse_device
+from link.transports.device import MAVLINK_PORT, NetworkDevice, parse_device
 from link.transports.opening import open_transport
 from link.transports.transport import Transport
 
 GPSD_PORT = 2947  # registered
+_NMEA_PORT = 10110  # likewise
 _NMEA_BAUD = 9600  # receivers' most frequent setting; NMEA 0183's own is 4800
 _CHUNK_BYTES = 4096
 
@@ -76,22 +77,26 @@ def nmea_opener(text: str) -> OpenTransport:
         UserError: there is no such file.
     """
     if text.startswith("tcp://"):
-        return device_opener("tcp:" + text.removeprefix("tcp://"))
+        return device_opener("tcp:" + text.removeprefix("tcp://"), _NMEA_PORT)
     path = Path(text)
     if text.startswith("/dev/") or "," in text or (path.exists() and path.is_char_device()):
         return device_opener(text if "," in text else f"{text},{_NMEA_BAUD}")
     if path.exists():
         return lambda: FileTransport(path)
     if ":" in text:
-        return device_opener(text)
+        return device_opener(text, _NMEA_PORT)
     raise UserError(f"--nmea {text!r}: there is no such file; write /dev/ttyX,BAUD, tcp://HOST:PORT or a file's name")
 
 
-def device_opener(text: str) -> OpenTransport:
+def device_opener(text: str, usual_port: int = MAVLINK_PORT) -> OpenTransport:
     """Return what opens a device as of `--mavlink`.
+
+    Args:
+        text: as the user wrote it.
+        usual_port: of what is spoken there, named in hints only.
 
     Raises:
         UserError: it has no known form.
     """
-    device = str(parse_device(text))
+    device = str(parse_device(text, usual_port))
     return lambda: open_transport(device)

@@ -44,3 +44,13 @@ def test_further_certificate_is_signed_by_the_authority_that_is_there_and_nothin
     (tmp_path / "ca.key").write_bytes(b"nonsense")
     assert run_app("companion", app, ["keys", str(tmp_path), "--name", "other"]) == 2
     assert "are no authority" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("host", ["", "a b", "192.168.4.1:7447"])
+def test_what_is_no_host_is_refused_before_anything_is_made(
+    host: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = tmp_path / "keys"
+    assert run_app("companion", app, ["keys", str(folder), "--host", host]) == 2
+    assert f"--host {host!r} is no name or address" in capsys.readouterr().err
+    assert not folder.exists()
