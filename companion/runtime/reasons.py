@@ -25,10 +25,7 @@ def reasons(
     *,
     as_json: JsonOption = False,
 ) -> None:
-    """Explain the reasons that the panel, the log and `landing/status` tell.
-
-    Example: companion reasons VEHICLE_CLOCK_AHEAD
-    """
+    """Explain the reasons that the panel, the log and `landing/status` tell."""
     helps = {one.reason.name: one for one in reason_helps(CompanionConfig())}
     wanted = [name.upper() for name in names or helps]
     unknown = [name for name in wanted if name not in helps]

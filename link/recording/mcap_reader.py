@@ -81,7 +81,7 @@ def recordings(folder: Path, stem: str) -> list[list[Path]]:
     """
     files = present_files(folder, stem)
     if not files:
-        raise UserError(f"{folder}: holds no recording {stem}_*.mcap; is this a run's folder?")
+        raise UserError(f"{folder}: holds no recording {stem}_*.mcap; name a run that was flown without --no-record")
     return [[file.path for file in group] for _, group in groupby(files, lambda file: file.start)]
 
 

@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from link.errors import UserError
 from link.program.cli import JsonOption
 from link.program.extras import require
 from scenarios.commands.campaign import say_missing, table_command
@@ -51,6 +52,16 @@ def report_or_campaign_table(
         print_report(table, sys.stdout)
 
 
+def _check_folder(path: Path, meant: str) -> None:
+    """Find out before the libraries are loaded, which takes seconds.
+
+    Raises:
+        UserError: there is no such folder.
+    """
+    if not path.is_dir():
+        raise UserError(f"{path}: there is no such folder; give {meant}")
+
+
 def figures_command(
     what: Annotated[
         str,
@@ -63,6 +74,8 @@ def figures_command(
 ) -> None:
     """Draw figures as PNG and SVG: of a run, of a campaign, or the source report's, measured."""
     require("report", "scenarios figures")
+    if what != _REPORT:
+        _check_folder(Path(what), f"that of a run or a campaign, or '{_REPORT}'")
     from scenarios.reports.figures import draw_figures
 
     if what == _REPORT:
@@ -85,6 +98,7 @@ def html_command(
 ) -> None:
     """Write a run or a campaign as one page that opens offline: verdict, figures, tables, configuration, versions."""
     require("report", "scenarios report")
+    _check_folder(what, "that of a run or a campaign")
     from scenarios.reports.html_report import write_report
 
     page = write_report(what, out)

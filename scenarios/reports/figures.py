@@ -4,7 +4,6 @@ from pathlib import Path
 
 from matplotlib.figure import Figure
 
-from link.errors import UserError
 from scenarios.campaigns.folder import read_landings, read_plan
 from scenarios.reports.campaign_figures import campaign_figures
 from scenarios.reports.figure_files import save_all
@@ -13,13 +12,7 @@ from scenarios.reports.run_figures import run_figures
 
 
 def is_campaign(folder: Path) -> bool:
-    """Return whether the folder is a campaign's.
-
-    Raises:
-        UserError: there is no such folder.
-    """
-    if not folder.is_dir():
-        raise UserError(f"{folder}: there is no such folder; give that of a run or a campaign, or 'report'")
+    """Return whether the folder is a campaign's."""
     return folder.joinpath("campaign.json").exists()
 
 
