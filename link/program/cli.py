@@ -20,7 +20,10 @@ from link.errors import UserError
 from link.program.clock import collect_rarely
 from link.program.exit_codes import EXIT_INTERRUPTED, EXIT_OK, EXIT_USER_ERROR
 from link.program.help import NO_EXAMPLES, App, Examples, explain
+from link.program.option_mistakes import describe, meant_command
 from link.program.text import printable
+
+_COMPLETION = "--install-completion"
 
 SetOption = Annotated[
     list[str] | None,
@@ -118,16 +121,26 @@ def run_app(name: str, app: App, args: Sequence[str] | None = None) -> int:
         return _fail(name, str(error))
     except typer.TyperException as error:
         context = getattr(error, "ctx", None)
-        where = _path_of(command, name, arguments) if context is None else context.command_path
-        return _fail(name, _whole(error), hint=f"(see {where} -h)")
+        where = " ".join((name, *meant_command(command, arguments)[1])) if context is None else context.command_path
+        return _fail(name, describe(error, command, arguments), hint=f"(see {where} -h)")
     except OSError as error:
-        if error.errno != errno.ENOSPC:
+        told = _told_of(error, arguments)
+        if not told:
             raise
         _end_output()
-        return _fail(name, "no space is left where it writes to: free some, or write elsewhere")
+        return _fail(name, told)
     except (KeyboardInterrupt, typer.Abort):
         return EXIT_INTERRUPTED
     return result if isinstance(result, int) else EXIT_OK
+
+
+def _told_of(error: OSError, arguments: Sequence[str]) -> str:
+    """Return what is said where no more can be written; empty for all that is no mistake of the user."""
+    if error.errno == errno.ENOSPC:
+        return "no space is left where it writes to: free some, or write elsewhere"
+    if _COMPLETION in arguments:
+        return f"{_COMPLETION}: {error.filename} cannot be written ({error.strerror}); set HOME to a folder that can"
+    return ""
 
 
 def _end_output() -> None:
@@ -136,26 +149,6 @@ def _end_output() -> None:
         sys.stdout.flush()
     except OSError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-
-
-def _path_of(command: Any, name: str, arguments: Sequence[str]) -> str:
-    """Return the words of the command that was meant: some mistakes do not tell."""
-    path = [name]
-    for word in arguments:
-        command = getattr(command, "commands", {}).get(word)
-        if command is None:
-            break
-        path.append(word)
-    return " ".join(path)
-
-
-def _whole(error: typer.TyperException) -> str:
-    """Return the message of a mistake; of a command that there is not, with all that there are, if none is near."""
-    told = error.format_message().replace("Value error, ", "")  # pydantic's word for a check of one's own
-    commands = getattr(getattr(getattr(error, "ctx", None), "command", None), "commands", {})
-    if not told.startswith("No such command") or "Did you mean" in told or not commands:
-        return told
-    return f"{told} There are {', '.join(commands)}."
 
 
 def _with_defaults(args: Sequence[str]) -> list[str]:

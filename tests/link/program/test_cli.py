@@ -70,7 +70,7 @@ def test_options_left_out_are_none() -> None:
         ("fail --code 2", "tool: the port is in use, choose [another]"),
         ("rn", "Did you mean 'run'?"),
         ("run --sed 3", "--seed"),
-        ("run --seed three", "'--seed': Input should be a valid integer"),
+        ("run --seed three", "--seed three: must be a whole number (see tool run -h)"),
         ("run --seed", "--seed"),
         ("run extra", "extra"),
     ],
@@ -129,6 +129,19 @@ def test_shell_completes_options(monkeypatch: pytest.MonkeyPatch, capsys: pytest
     with pytest.raises(SystemExit):
         run_app("tool", program([]), [])
     assert capsys.readouterr().out == "--drone\n"
+
+
+def test_completion_that_cannot_be_installed_is_one_line_and_exit_code_2(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def install(**_: object) -> None:
+        raise PermissionError(13, "Permission denied", "/home/somebody/.bashrc")
+
+    monkeypatch.setattr("typer.completion.install", install)
+    assert run_app("tool", program([]), ["--install-completion"]) == 2
+    told = capsys.readouterr().err
+    assert told.count("\n") == 1
+    assert "/home/somebody/.bashrc cannot be written (Permission denied)" in told
 
 
 def test_importing_the_command_line_loads_nothing_heavy() -> None:
