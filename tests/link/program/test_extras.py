@@ -11,6 +11,7 @@ from importlib.metadata import packages_distributions
 from pathlib import Path
 
 import pytest
+from typer.main import get_command
 
 from companion.config.companion import CompanionConfig
 from companion.config.estimation import EstimatorKind
@@ -24,6 +25,7 @@ from link.zenoh.keys import Keys
 from scenarios.app import app
 
 ROOT = Path(__file__).parents[3]
+PACKAGES = ("companion", "link", "scenarios", "sim_autopilot")
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 BLOCKED = """
 import sys
@@ -52,6 +54,12 @@ def distributions(requirements: list[str]) -> set[str]:
     return {name.lower() for name in names} - {"decklander"}
 
 
+def asked_extras() -> set[tuple[str, str]]:
+    """What asks for an extra in the sources: the extra, and the words of the user that need it."""
+    sources = (path.read_text(encoding="utf-8") for package in PACKAGES for path in (ROOT / package).rglob("*.py"))
+    return {found for text in sources for found in re.findall(r'require\("(\w+)", "([^"]+)"\)', text)}
+
+
 @pytest.mark.parametrize("extra", EXTRAS)
 def test_modules_of_an_extra_come_with_it(extra: str) -> None:
     declared = distributions(PROJECT["optional-dependencies"][extra])
@@ -66,6 +74,16 @@ def test_all_has_every_extra() -> None:
     for extra in list(named):
         named |= {part for one in PROJECT["optional-dependencies"][extra] for part in re.findall(r"\[(\w+)\]", one)}
     assert named | {"campaign", "sim"} == set(PROJECT["optional-dependencies"]) - {"all"}
+
+
+def test_installation_names_every_command_and_with_an_extra_all_that_asks_for_it() -> None:
+    table = (ROOT / "docs" / "install.md").read_text(encoding="utf-8")
+    rows = dict(re.findall(r"^\| `\[?(\w+)\]?` \|(.*)\|$", table, re.MULTILINE))
+    assert set(rows) == {"decklander", "all", *EXTRAS}
+    words = set(re.findall(r"[\w-]+", " ".join(rows.values())))
+    assert words >= {*PROJECT["scripts"], *get_command(app).commands}
+    for extra, asked in asked_extras():
+        assert asked.removeprefix("scenarios ").split()[0] in rows[extra], asked
 
 
 @pytest.mark.slow
