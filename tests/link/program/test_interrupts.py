@@ -1,11 +1,13 @@
 """Ctrl-C ends a program with exit code 130 and no traceback, whatever it is in."""
 
+import os
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
+import link
 from link.program.interrupts import COMPILING
 from scenarios.processes.programs import MODULES
 
@@ -17,6 +19,21 @@ except BaseException:  # as some modules do
     pass
 from tests.link.program.test_cli import program
 app = program([])
+"""
+
+_MEETS_EXEC = """
+import sys
+from link.program.cli import make_app
+from link.program.start import start
+app = make_app("Tests Ctrl-C.")
+
+@app.command()
+def run() -> None:
+    sys.stdout.write("so far\\n")
+    exec("import os, signal; os.kill(os.getpid(), signal.SIGINT)")
+
+if __name__ == "__main__":
+    start("tool", "program")
 """
 
 _WHILE_COMPILING = """
@@ -61,6 +78,20 @@ def test_ctrl_c_while_a_program_is_imported_ends_it_without_a_word(tmp_path: Pat
     (tmp_path / "interrupted.py").write_text(_WHILE_IMPORTING)
     code = f"import sys; sys.path.insert(0, {str(tmp_path)!r}); from link.program.start import start"
     assert run(f"{code}; start('tool', 'interrupted')") == (130, "", "")
+
+
+def test_ctrl_c_that_meets_an_exec_ends_a_program_with_its_exit_code_all_the_same(tmp_path: Path) -> None:
+    (tmp_path / "program.py").write_text(_MEETS_EXEC)
+    command = [sys.executable, "-m", "program"]
+    done = subprocess.run(
+        command,
+        capture_output=True,
+        text=True,
+        check=False,
+        cwd=tmp_path,
+        env=os.environ | {"PYTHONPATH": str(Path(link.__file__).parents[1])},
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (130, "so far\n", "")
 
 
 def test_ctrl_c_while_numerics_are_compiled_ends_the_program() -> None:
