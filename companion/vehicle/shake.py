@@ -30,7 +30,7 @@ class PadSwing(Struct, frozen=True, kw_only=True, eq=False):
         shake_enu: (3, n, 2) place, velocity and acceleration of the horizontal swing that is not followed.
         climb_std_m_s: (n,) standard deviation of the pad's velocity upwards.
         tilt_std_rad: (n, 4) standard deviations of roll, its rate, rad/s, pitch and its rate.
-        lengths_m: by which roll and pitch shake the pad.
+        above_m: height of the pad over the axis about which the deck tilts.
         heave_rad_s: angular frequency of the heave.
     """
 
@@ -38,7 +38,7 @@ class PadSwing(Struct, frozen=True, kw_only=True, eq=False):
     shake_enu: Array
     climb_std_m_s: Array
     tilt_std_rad: Array
-    lengths_m: tuple[float, float]
+    above_m: float
     heave_rad_s: float
 
 
@@ -59,7 +59,7 @@ def swing_of(forecast: Forecast, above_m: float) -> PadSwing | None:
         shake_enu=shake_enu,
         climb_std_m_s=np.zeros(len(slope)) if forecast.climb_std_m_s is None else forecast.climb_std_m_s,
         tilt_std_rad=np.zeros((len(slope), 4)) if forecast.tilt_std_rad is None else forecast.tilt_std_rad,
-        lengths_m=(roll[2], pitch[2]),
+        above_m=above_m,
         heave_rad_s=heave[0],
     )
 

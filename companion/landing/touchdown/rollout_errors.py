@@ -62,6 +62,8 @@ def draw_errors(then: VehicleEstimate, pad: PadPath, response: ResponseModel, nu
 def draw_deck(pad: PadPath, contact_s: float, normals: Array) -> Array:
     """Return by what a deck's slope, and place and velocity of the pad's shake, may be off at the contact, (n, 3, 2).
 
+    A drone follows a part of the shake, but of the one that is forecast.
+
     Args:
         pad: from now on.
         contact_s: until then.
@@ -71,14 +73,13 @@ def draw_deck(pad: PadPath, contact_s: float, normals: Array) -> Array:
         return np.zeros((len(normals), 3, 2))
     std = np.array([np.interp(contact_s, pad.offset_s, column) for column in pad.swing.tilt_std_rad.T])
     roll, roll_rate, pitch, pitch_rate = (normals * std).T[:, :, None]
-    by_roll_m, by_pitch_m = pad.swing.lengths_m
     ahead = np.array([math.cos(pad.yaw_rad), math.sin(pad.yaw_rad)])
     starboard = np.array([ahead[1], -ahead[0]])
     return np.stack(
         [
             -roll * starboard - pitch * ahead,
-            by_roll_m * roll * starboard + by_pitch_m * pitch * ahead,
-            by_roll_m * roll_rate * starboard + by_pitch_m * pitch_rate * ahead,
+            pad.swing.above_m * (roll * starboard + pitch * ahead),
+            pad.swing.above_m * (roll_rate * starboard + pitch_rate * ahead),
         ],
         axis=1,
     )

@@ -22,7 +22,7 @@ SWINGING = PadSwing(
     shake_enu=np.zeros((3, 5, 2)),
     climb_std_m_s=np.zeros(5),
     tilt_std_rad=np.zeros((5, 4)),
-    lengths_m=(0.0, 0.0),
+    above_m=1.5,
     heave_rad_s=0.6,
 )
 RISK = DESCENT.risk.begins_max

@@ -51,7 +51,7 @@ def test_swing_tilts_the_deck_beside_the_road() -> None:
         shake_enu=shake,
         climb_std_m_s=np.zeros(n),
         tilt_std_rad=np.zeros((n, 4)),
-        lengths_m=(0.0, 0.0),
+        above_m=1.5,
         heave_rad_s=1.0,
     )
     slope = slope_over(replace(pad, swing=swing))
@@ -61,20 +61,20 @@ def test_swing_tilts_the_deck_beside_the_road() -> None:
 @given(
     yaw_rad=st.floats(-3.0, 3.0),
     tilt=st.tuples(*4 * [st.floats(-0.2, 0.2)]),
-    lengths_m=st.tuples(st.floats(0.0, 3.0), st.floats(0.0, 3.0)),
+    above_m=st.floats(0.0, 3.0),
 )
 def test_deck_that_tilts_otherwise_is_off_by_what_the_tilt_makes_of_it(
-    yaw_rad: float, tilt: tuple[float, float, float, float], lengths_m: tuple[float, float]
+    yaw_rad: float, tilt: tuple[float, float, float, float], above_m: float
 ) -> None:
     n = 3
-    roll, pitch = ((1.0, 0.1, length_m) for length_m in lengths_m)
-    slope, shake = tilted_deck(np.full(n, yaw_rad), np.tile(tilt, (n, 1)), roll, pitch)
+    axis = (1.0, 0.1, above_m)
+    slope, shake = tilted_deck(np.full(n, yaw_rad), np.tile(tilt, (n, 1)), axis, axis)
     swing = PadSwing(
         slope=np.zeros((n, 2)),
         shake_enu=np.zeros((3, n, 2)),
         climb_std_m_s=np.zeros(n),
         tilt_std_rad=np.outer([0.0, 1.0, 2.0], np.abs(tilt)),
-        lengths_m=lengths_m,
+        above_m=above_m,
         heave_rad_s=1.0,
     )
     pad = replace(pad_at(), offset_s=np.array([0.0, 0.5, 1.0]), yaw_rad=yaw_rad, swing=swing)
