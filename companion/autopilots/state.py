@@ -47,6 +47,7 @@ class AutopilotState(Struct, frozen=True, kw_only=True):
         attitude_boot_ms: when that was, on the autopilot's clock.
         origin_msl: the origin with its altitude above mean sea level, as it is sent.
         origin_doubted_msl: another one, told once; a single message may be anybody's.
+        doubted_ns: of the drone's newest report then; with its origin it steps in the next.
         geoid_height_m: of mean sea level above the ellipsoid, None until the autopilot's receiver tells it.
         parameters: those read, by name.
         texts: what it said and nobody has taken yet.
@@ -59,6 +60,7 @@ class AutopilotState(Struct, frozen=True, kw_only=True):
     attitude_boot_ms: int = 0
     origin_msl: Datum | None = None
     origin_doubted_msl: Datum | None = None
+    doubted_ns: int = 0
     geoid_height_m: float | None = None
     parameters: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
     texts: tuple[str, ...] = ()
@@ -219,15 +221,16 @@ def has_frame_moved(before: AutopilotState, state: AutopilotState) -> bool:
 
 
 def _hear_origin(state: AutopilotState, told: Datum | None) -> AutopilotState:
-    """Take the first origin, and another one once it is told again; what is the same moves nothing, however often."""
-    known, doubted = state.origin_msl, state.origin_doubted_msl
+    """Take the first origin, and another one that is told again once the drone has told its place in between."""
+    known, doubted, newest_ns = state.origin_msl, state.origin_doubted_msl, state.own.t_ns if state.own else 0
     if told is None:
         return state
     if known is not None and is_same(told, known):
         return replace(state, origin_doubted_msl=None)
-    if known is None or (doubted is not None and is_same(told, doubted)):
+    is_told_again = doubted is not None and is_same(told, doubted)
+    if known is None or (is_told_again and (newest_ns > state.doubted_ns or not newest_ns)):
         return replace(state, origin_msl=told, origin_doubted_msl=None)
-    return replace(state, origin_doubted_msl=told)
+    return state if is_told_again else replace(state, origin_doubted_msl=told, doubted_ns=newest_ns)
 
 
 def _place_origin(state: AutopilotState, projection: Projection) -> AutopilotState:

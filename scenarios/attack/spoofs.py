@@ -90,7 +90,7 @@ UNSIGNED: Mapping[str, frozenset[str]] = {
     "mode": frozenset({"in_control"}),
     "disarmed": frozenset({"armed"}),
     "failsafe": frozenset({"failsafe"}),
-    "place": frozenset({"own"}),
+    "place": frozenset({"own", "range_down"}),  # a distance stays, but nobody knows from where it was seen
     "place, 3 s ahead": frozenset(),
     "place, 3 s behind": frozenset(),
     "landed": frozenset({"landed"}),

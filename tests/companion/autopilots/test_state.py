@@ -115,14 +115,18 @@ def test_moved_origin_is_counted_and_a_repeated_one_is_not() -> None:
     assert _hear(*2 * [_origin(475_000_000, 80_000_000, 401_000)], state=state).view.frame_moves.origin_count == 2
 
 
-def test_origin_that_moves_by_what_the_drone_stepped_leaves_the_ground_known() -> None:
-    flies = (LEVEL, _at(0, (0.0, 0.0, 0.0)), _at(20, (-2.3, 0.0, -0.9)))
-    state = _hear(*2 * [_origin(475_000_000, 80_000_000, 400_000)], *flies)
-    moves = _hear(*2 * [_origin(475_000_200, 80_000_000, 399_000)], state=state).view.frame_moves
+@pytest.mark.parametrize("steps_first", [True, False])
+def test_origin_that_moves_by_what_the_drone_stepped_leaves_the_ground_known(*, steps_first: bool) -> None:
+    known, other = _origin(475_000_000, 80_000_000, 400_000), _origin(475_000_200, 80_000_000, 399_000)
+    before, steps, after = _at(0, (0.0, 0.0, 0.0)), _at(20, (-2.3, 0.0, -0.9)), _at(40, (-2.3, 0.0, -0.9))
+    order = (steps, other, after, other) if steps_first else (other, other, steps, other)
+    state = _hear(known, LEVEL, before, *order)
+    moves = state.view.frame_moves
     assert moves.origin_count == 1
     assert moves.shift_enu_m == pytest.approx((0.0, -2.3, 0.9))
     assert moves.origin_shift_enu_m == pytest.approx((0.0, -2.22, 1.0), abs=0.01)
-    again = _hear(*2 * [_origin(475_000_400, 80_000_000, 399_000)], state=state).view.frame_moves
+    another = _origin(475_000_400, 80_000_000, 399_000)
+    again = _hear(another, _at(60, (-2.3, 0.0, -0.9)), another, state=state).view.frame_moves
     assert again.origin_count == 2
 
 
