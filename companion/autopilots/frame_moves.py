@@ -2,7 +2,7 @@
 
 An autopilot that corrects its estimate, or loses and finds its receiver, steps in W: from one report to the next its
 place differs by what it did not fly. What is seen from the drone steps along; what stands on the ground does not. One
-that moves its origin steps as well, and tells the new origin some tenths of a second later: then what stands on the
+that moves its origin steps as well, and the new origin is known some tenths of a second later: then what stands on the
 ground has moved in W by as much.
 """
 

@@ -228,7 +228,7 @@ def _hear_origin(state: AutopilotState, told: Datum | None) -> AutopilotState:
     if known is not None and is_same(told, known):
         return replace(state, origin_doubted_msl=None)
     is_told_again = doubted is not None and is_same(told, doubted)
-    if known is None or (is_told_again and (newest_ns > state.doubted_ns or not newest_ns)):
+    if known is None or (is_told_again and (newest_ns != state.doubted_ns or not newest_ns)):
         return replace(state, origin_msl=told, origin_doubted_msl=None)
     return state if is_told_again else replace(state, origin_doubted_msl=told, doubted_ns=newest_ns)
 

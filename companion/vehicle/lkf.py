@@ -137,9 +137,9 @@ class LkfModel:
         nis = squared_norm(measurement.value - H @ state.mean, H @ state.covariance @ H.T + R)
         return Update(state=Gaussian(mean=mean, covariance=symmetric(covariance)), nis=nis, gate_nis=nis, dof=3)
 
-    def move_frame(self, state: Gaussian, step: Measurement) -> Gaussian:  # noqa: ARG002
-        """Return the same state: it is in the frame of the fixes, which alone it knows."""
-        return state
+    def move_frame(self, state: Gaussian, step: Measurement) -> Gaussian:
+        """Return the state where the fixes have it from now on: nothing else tells it of the place."""
+        return replace(state, mean=state.mean + np.pad(step.value[3:], (0, 6)))
 
     def recover(self, state: Gaussian, measurement: Measurement) -> Gaussian:
         """Start again: on the new position, or where it is with the velocity open."""

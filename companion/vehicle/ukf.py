@@ -34,6 +34,11 @@ class Car:
 UkfState = Gaussian | Car
 
 
+def _place_of(state: UkfState) -> list[int]:
+    """Return the indices of the position."""
+    return [0, 1, 6] if isinstance(state, Car) else [0, 1, 2]
+
+
 def _position(state: Array) -> Array:
     return state[[0, 1, 6]]
 
@@ -105,16 +110,18 @@ class UkfModel:
         sees = SEES.get(measurement.quantity)
         return None if sees is None else self._update_car(state, measurement)
 
-    def move_frame(self, state: UkfState, step: Measurement) -> UkfState:  # noqa: ARG002
-        """Return the same state: it is in the frame of the fixes, which alone it knows."""
-        return state
+    def move_frame(self, state: UkfState, step: Measurement) -> UkfState:
+        """Return the state where the fixes have it from now on: nothing else tells it of the place."""
+        mean = state.mean.copy()
+        mean[_place_of(state)] += step.value[3:]
+        return replace(state, mean=mean)
 
     def recover(self, state: UkfState, measurement: Measurement) -> UkfState:
         """Start again: at the new position, or where it is with everything else open."""
         if measurement.quantity is Quantity.POSITION:
             return self.start(measurement)
         P = state.covariance
-        index = [0, 1, 6] if isinstance(state, Car) else [0, 1, 2]
+        index = _place_of(state)
         return self.start(replace(measurement, value=state.mean[index], covariance=P[np.ix_(index, index)]))
 
     def describe(self, state: UkfState, t_ns: int) -> VehicleEstimate:

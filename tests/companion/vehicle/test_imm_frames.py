@@ -111,6 +111,18 @@ def test_frame_that_steps_takes_what_is_seen_along_and_leaves_what_stands_on_the
         np.testing.assert_allclose(shift_m, STEP_M if sees else told_m, atol=0.06)
 
 
+@pytest.mark.parametrize("kind", [EstimatorKind.LKF, EstimatorKind.LKF_REPORT, EstimatorKind.UKF])
+def test_filter_that_knows_fixes_alone_moves_with_the_ground_and_not_with_the_drone(kind: EstimatorKind) -> None:
+    chosen, at_s, then_ns = estimator(kind), 8.05, now_ns(8.06)
+    said = [one for one in arrivals(straight(5.0, 20.0), NOMINAL, 3) if one.t_ns <= then_ns]
+    before = chosen.estimate(chosen.fuse(None, said), then_ns)
+    for told_m in (np.zeros(3), STEP_M):
+        after = chosen.estimate(chosen.fuse(None, [*said, _step(STEP_M, told_m, at_s)]), then_ns)
+        assert before is not None
+        assert after is not None
+        np.testing.assert_allclose(after.position_enu_m - before.position_enu_m, told_m, atol=1e-6)
+
+
 def test_frame_that_steps_takes_a_vehicle_along_that_is_only_seen() -> None:
     model = ImmModel(config=ImmConfig(), deck=Deck(), placed_by=Quantity.PAD)
     moved = model.move_frame(model.start(_sighting()), _step(STEP_M, np.zeros(3), 0.0))
