@@ -44,7 +44,7 @@ def take_interrupts(program: str) -> None:
     """Let Ctrl-C act as described above from now on, unless who started this process lets it ignore that.
 
     Args:
-        program: its name, which begins the line that says that the numerics are compiled.
+        program: its name, which begins the line that says that the numerics are compiled; empty for none.
     """
     _Process.program = program
     if signal.getsignal(signal.SIGINT) is signal.default_int_handler:

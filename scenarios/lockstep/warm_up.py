@@ -164,6 +164,6 @@ def _main_beside() -> int:
 
 if __name__ == "__main__":
     is_beside = sys.argv[1:] == [_BESIDE]
-    take_interrupts(f"{_MODULE}, second process" if is_beside else _MODULE)
+    take_interrupts("" if is_beside else _MODULE)  # one of the two tells it
     with EndingAtOnce():
         sys.exit(_main_beside() if is_beside else main())
