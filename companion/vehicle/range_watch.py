@@ -62,6 +62,16 @@ def watch_ranges(watch: RangeWatch, seen: RangeReading, vehicle_up_m: float | No
     return replace(watch, vehicle_up_m=vehicle_up_m, lowest=lowest), over_m - lowest[0][1]
 
 
+def moved_up(watch: RangeWatch, up_m: float) -> RangeWatch:
+    """Return the watch in a W that the drone has stepped up in by `up_m`, with all that it sees.
+
+    Whether a reading stays the same is asked anew: the drone's own height has changed without its rising.
+    """
+    recent = tuple((t_ns, height_m + up_m) for t_ns, height_m in watch.recent)
+    vehicle_up_m = None if watch.vehicle_up_m is None else watch.vehicle_up_m + up_m
+    return replace(watch, same=None, recent=recent, vehicle_up_m=vehicle_up_m)
+
+
 def _is_stuck(watch: RangeWatch, seen: RangeReading) -> bool:
     """Return whether the range finder says the same while the drone rises or sinks."""
     if watch.same is None or watch.same.own is None or seen.own is None:

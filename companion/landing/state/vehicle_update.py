@@ -28,7 +28,7 @@ from companion.situation.phases import FOLLOWING_PHASES, LANDING_PHASES, Phase
 from companion.vehicle.hindsight import forget_instants, update_hindsight
 from companion.vehicle.pad import PadPath, pad_path
 from companion.vehicle.pad_reach import is_agreement_old
-from companion.vehicle.range_watch import RangeWatch, watch_ranges
+from companion.vehicle.range_watch import RangeWatch, moved_up, watch_ranges
 from companion.vehicle.surface import surface_measurements
 from link.records import replace
 
@@ -99,9 +99,10 @@ def _in_present_frame(vehicle: VehicleMemory, inputs: StepInputs, system: System
     before, now = vehicle.frame_moves, inputs.autopilot.frame_moves
     if now == before:
         return vehicle
-    estimator = vehicle.estimator if now.origin_count == before.origin_count else None
+    if now.origin_count != before.origin_count:
+        return replace(vehicle, estimator=None, ranges=RangeWatch(), frame_moves=now)
+    estimator, seen_m = vehicle.estimator, between(before.shift_enu_m, now.shift_enu_m)
     if estimator is not None:
-        seen_m = between(before.shift_enu_m, now.shift_enu_m)
         told_m = between(before.origin_shift_enu_m, now.origin_shift_enu_m)
         variance_m2 = now.shift_variance_m2 - before.shift_variance_m2
         # What is seen from the drone steps with its report; the fixes step with the first that comes from now on.
@@ -110,7 +111,7 @@ def _in_present_frame(vehicle: VehicleMemory, inputs: StepInputs, system: System
         steps = [_frame_step(now.stepped_ns, seen_m, np.zeros(3), variance_m2)] if seen_m.any() else []
         steps += [_frame_step(told_ns, np.zeros(3), told_m, 0.0)] if told_m.any() else []
         estimator = system.estimator.fuse(estimator, steps)
-    return replace(vehicle, estimator=estimator, ranges=RangeWatch(), frame_moves=now)
+    return replace(vehicle, estimator=estimator, ranges=moved_up(vehicle.ranges, float(seen_m[2])), frame_moves=now)
 
 
 def _frame_step(t_ns: int, seen_m: Array, told_m: Array, variance_m2: float) -> Measurement:

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from companion.core.data import OwnState, RangeReading
-from companion.vehicle.range_watch import RangeWatch, watch_ranges
+from companion.vehicle.range_watch import RangeWatch, moved_up, watch_ranges
 from link.frames.rotations import quaternion_from_roll_pitch_yaw
 
 HEIGHT_M = 5.0
@@ -88,6 +88,18 @@ def test_road_does_not_rise_as_the_vehicles_height_is_corrected() -> None:
     for i in range(60):
         watch, rises_m = watch_ranges(watch, _reading(i, 0.02 * (i % 2)), 0.8 if i < 30 else 0.0)
     assert rises_m == pytest.approx(0.02)
+
+
+@pytest.mark.parametrize("up_m", [-2.0, -0.2, 0.0, 0.2, 2.0])
+def test_frame_that_steps_changes_nothing_of_what_rises(up_m: float) -> None:
+    watch, rises_m = RangeWatch(), None
+    for i in range(30):
+        step_m, surface_m = up_m if i >= 20 else 0.0, 1.6 if i >= 10 else 0.1
+        watch = moved_up(watch, up_m) if i == 20 else watch
+        seen = _reading(i, surface_m + step_m, height_m=HEIGHT_M + step_m)
+        watch, rises_m = watch_ranges(watch, seen, step_m)
+        assert (rises_m is None) is (i < 4 or i in {10, 11})  # too few, or the roof's edge
+    assert rises_m == pytest.approx(1.5)
 
 
 def test_surface_seen_while_the_vehicle_is_not_placed_is_not_believed() -> None:
