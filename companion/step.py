@@ -147,7 +147,7 @@ def _look(memory: StepMemory, situation: Situation, pad: PadPath | None, config:
     phase, vehicle = memory.progress.phase, memory.vehicle
     vehicle = replace(
         vehicle,
-        course=update_course(vehicle.course, pad, vehicle.hindsight.speed_std_m_s, config),
+        course=update_course(vehicle.course, situation.monotonic_ns, pad, vehicle.hindsight.speed_std_m_s, config),
         is_road_elsewhere=is_road_elsewhere(vehicle.is_road_elsewhere, phase, situation, config),
     )
     places = replace(memory.places, ground_enu_m=update_ground(memory.places.ground_enu_m, phase, situation))

@@ -118,9 +118,10 @@ def update_state(state: AutopilotState, message: Message, clock: ClockMap, drive
 def shift_reports(state: AutopilotState, by_ns: int) -> AutopilotState:
     """Return the state with the times of all reports put off by `by_ns`, for a UTC that was set by as much."""
     history = tuple(replace(own, t_ns=own.t_ns + by_ns) for own in state.history)
-    seen = state.view.range_down
+    seen, moves = state.view.range_down, state.view.frame_moves
     seen = None if seen is None else replace(seen, t_ns=seen.t_ns + by_ns)
-    return replace(state, history=history, view=replace(state.view, range_down=seen))
+    view = replace(state.view, range_down=seen, frame_moves=replace(moves, stepped_ns=moves.stepped_ns + by_ns))
+    return replace(state, history=history, view=view, doubted_ns=state.doubted_ns + by_ns)
 
 
 def _said(state: AutopilotState, message: Message, driver: Driver) -> AutopilotState:

@@ -9,13 +9,13 @@ from companion.check.observation import DetectorFacts, VehicleFacts
 from companion.check.reading import Reader
 from companion.check.vehicle_reading import VehicleReader
 from companion.config.integrity import IntegrityConfig
-from companion.runtime.pad_question import PadQuestion
 from link.mavlink.parameters import parameter_set_message
 from link.mavlink.pinned_peer import PinnedPeer
 from link.mavlink.session import MavlinkSession
 from link.mavlink.signing import Signing
 from link.transports.transport import Transport
 from link.zenoh.keys import Keys
+from link.zenoh.pad_question import PadQuestion
 from link.zenoh.session import Inbox, ZenohSession
 
 _WAIT_S = 0.005

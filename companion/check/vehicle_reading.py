@@ -6,11 +6,11 @@ import statistics
 
 from companion.check.observation import VehicleFacts
 from companion.config.integrity import IntegrityConfig
-from companion.runtime.pad_question import PadQuestion
 from link.frames.rotations import yaw_of
 from link.messages import Fix, FixVelocity, VehicleImu
 from link.payloads import cdr
 from link.payloads.checks import PayloadError
+from link.zenoh.pad_question import PadQuestion
 
 _HEADING_AGE_MAX_NS = 300_000_000
 _COMPARED_MIN = 5

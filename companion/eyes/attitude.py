@@ -10,12 +10,23 @@ from link.messages import Quaternion
 GAP_MAX_NS = 150_000_000
 """As the companion itself: a drone that turns at 0.5 rad/s is then 4 degrees off."""
 
+_HISTORY = 32  # a second and more of what the companion tells
+
 
 class Attitude(Struct, frozen=True, kw_only=True):
     """q_WB at `t_ns` (UTC)."""
 
     t_ns: int
     orientation_wxyz: Quaternion
+
+
+def with_attitude(history: tuple[Attitude, ...], attitude: Attitude) -> tuple[Attitude, ...]:
+    """Return the history, oldest first, with an attitude that is told; it begins anew where the clock was set back."""
+    if not history or attitude.t_ns < history[-1].t_ns:
+        return (attitude,)
+    if attitude.t_ns == history[-1].t_ns:  # of a step of the companion without a new state of the drone
+        return history
+    return (*history[1 - _HISTORY :], attitude)
 
 
 def attitude_at(history: tuple[Attitude, ...], t_ns: int) -> Quaternion | None:

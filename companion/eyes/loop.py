@@ -2,7 +2,6 @@
 
 import signal
 import time
-from dataclasses import dataclass
 from enum import Enum
 
 import structlog
@@ -13,14 +12,13 @@ from companion.eyes.picture import Gray
 from companion.eyes.recording import PERIOD_NS, PictureRecord
 from companion.eyes.sources.frames import Captured, Source
 from link.errors import UserError
-from link.messages import CompressedPicture, PadGeometry
-from link.payloads import cdr, json_messages
-from link.payloads.checks import PayloadError
+from link.messages import CompressedPicture
+from link.payloads import cdr
 from link.program.clock import spare_present_objects
 from link.program.service import Service
 from link.recording.recorder import Recorder
-from link.zenoh.inbox import Inbox
 from link.zenoh.keys import Keys
+from link.zenoh.pad_question import PadQuestion
 from link.zenoh.session import ZenohSession
 
 STOPPED_NS = 400_000_000  # with a turn of the loop half a second
@@ -58,15 +56,7 @@ def failure_of(watch: CameraWatch, now_ns: int) -> Failure | None:
 
 _WAIT_S = 0.05
 _RESTART_EVERY_NS = 1_000_000_000
-_ASK_EVERY_NS = 1_000_000_000
 _OWN = "own"
-
-
-@dataclass(slots=True)
-class _PadQuestion:
-    answers: Inbox | None = None
-    asked_ns: int = 0
-    is_answered: bool = False
 
 
 class EyesLoop:
@@ -90,7 +80,7 @@ class EyesLoop:
         zenoh.declare_alive(keys.detector_alive)
         self._own = zenoh.subscribe(keys.record(_OWN))
         self._view_encoding = cdr.encoding_of(CompressedPicture)
-        self._question = _PadQuestion()
+        self._pad_question = PadQuestion(zenoh, keys.pad)
         self._failed: Failure | None = None
         self._refused_why: str | None = None
         self._restarted_ns = 0
@@ -104,8 +94,8 @@ class EyesLoop:
         """Run until a signal comes.
 
         Raises:
-            UserError: frames are not of the calibration's size, the board is not that of the vehicle's pad, or none
-                of the files that were given is a picture.
+            UserError: the first frame is not of the calibration's size, the board is not that of the vehicle's pad, or
+                none of the files that were given is a picture.
         """
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, self._stop)
@@ -142,7 +132,9 @@ class EyesLoop:
         self._tell_refused()
         for line in self._node.take_news():
             self._log.info(line)
-        self._ask_for_pad(now_ns)
+        pad = self._pad_question.poll(now_ns * 1e-9)
+        if pad is not None:
+            self._node.receive_pad(pad)
         return self._look_after(watch, now_ns) if self._source.is_live else watch
 
     def _tell_refused(self) -> None:
@@ -173,19 +165,3 @@ class EyesLoop:
             except UserError as error:
                 self._log.warning("camera cannot be started", why=str(error))
         return watch
-
-    def _ask_for_pad(self, now_ns: int) -> None:
-        """Ask the vehicle for its pad until it has told, and compare it with the board."""
-        question = self._question
-        if question.is_answered:
-            return
-        for sample in () if question.answers is None else question.answers.take():
-            try:
-                self._node.receive_pad(json_messages.decode(PadGeometry, sample.payload))
-            except PayloadError:
-                self._node.counts.bad_payloads += 1
-            else:
-                question.is_answered = True
-        if not question.is_answered and now_ns - question.asked_ns >= _ASK_EVERY_NS:
-            question.asked_ns = now_ns
-            question.answers = self._zenoh.ask(self._keys.pad, b"", _ASK_EVERY_NS * 1e-9)

@@ -7,7 +7,7 @@ import numpy as np
 
 from companion.eyes.alignment import is_told_wrong, no_alignment, turned_of, update_alignment
 from companion.eyes.annotation import Drawing, annotate, drawing_of, jpeg_of
-from companion.eyes.attitude import Attitude, attitude_at
+from companion.eyes.attitude import Attitude, attitude_at, with_attitude
 from companion.eyes.calibration import check_size
 from companion.eyes.camera import matrix_of
 from companion.eyes.mounting import angles_of
@@ -21,7 +21,6 @@ from link.payloads import cdr
 from link.payloads.checks import PayloadError
 from link.zenoh.keys import Keys, Publication
 
-_HISTORY = 32  # attitudes: a second and more of what the companion tells
 _SIZE_SPARE = 1.02  # by which a board may be larger than the pad: what tape measures
 
 
@@ -40,6 +39,7 @@ class _News:
     foreign_ids: set[int] = field(default_factory=set)
     is_seen: bool = False
     is_turned: bool = False
+    has_refused: bool = False
     lines: list[str] = field(default_factory=list)
 
 
@@ -72,30 +72,37 @@ class EyesNode:
         except PayloadError:
             self.counts.bad_payloads += 1
             return
-        if self._attitudes and own.t_ns <= self._attitudes[-1].t_ns:
-            self._attitudes = ()  # its clock was set back
         attitude = Attitude(t_ns=own.t_ns, orientation_wxyz=own.orientation_wxyz)
-        self._attitudes = (*self._attitudes[1 - _HISTORY :], attitude)
+        self._attitudes = with_attitude(self._attitudes, attitude)
 
     def receive_pad(self, pad: PadGeometry) -> None:
         """Check the vehicle's description of its pad against the board.
 
+        Once the board has been seen, somebody may be flying by it: then a description that does not fit ends nothing.
+
         Raises:
-            UserError: the board is larger than the pad that it should be on.
+            UserError: the board is larger than the pad that it should be on, and has not been seen yet.
         """
         board_m = self._system.board.config.size_m
-        if any(own > _SIZE_SPARE * told for own, told in zip(board_m, pad.size_m, strict=True)):
-            raise UserError(
-                "the board is {:g} x {:g} m and the vehicle's pad {:g} x {:g} m: give the board that is on it by "
-                "--board, or correct the vehicle's size_m".format(*board_m, *pad.size_m)
-            )
+        if all(own <= _SIZE_SPARE * told for own, told in zip(board_m, pad.size_m, strict=True)):
+            return
+        why = (
+            "the board is {:g} x {:g} m and the vehicle's pad {:g} x {:g} m: give the board that is on it by "
+            "--board, or correct the vehicle's size_m".format(*board_m, *pad.size_m)
+        )
+        if not self.counts.seen:
+            raise UserError(why)
+        self._news.lines.append(why)
 
     def look(self, captured: Captured, *, shows: bool) -> list[Publication]:
         """Return what a frame brings: a sighting, and with `shows` the frame with it drawn in.
 
         Raises:
-            UserError: the frame's size is not the calibration's.
+            UserError: the first frame's size is not the calibration's; later ones of another size are passed over.
         """
+        if self.counts.frames and captured.size_px != self._system.camera.size_px:
+            self._refuse(captured.size_px)
+            return []
         check_size(self._system.camera, captured.size_px)
         frame = Frame(
             t_ns=captured.t_ns,
@@ -115,6 +122,16 @@ class EyesNode:
             shown = CompressedPicture(t_ns=captured.t_ns, format="jpeg", data=drawn)
             found.append(Publication(self._keys.pad_view, cdr.encode(shown), cdr.encoding_of(CompressedPicture)))
         return found
+
+    def _refuse(self, size_px: tuple[int, int]) -> None:
+        self.counts.bad_payloads += 1
+        if not self._news.has_refused:
+            self._news.has_refused = True
+            self._news.lines.append(
+                "pictures of {} x {} pixels are passed over: the calibration is for {} x {}".format(
+                    *size_px, *self._system.camera.size_px
+                )
+            )
 
     def _count(self, sight: Sight) -> None:
         counts, news = self.counts, self._news

@@ -97,6 +97,7 @@ _COURSE_OVER_S = 2.0  # heading and course are compared over so long: a cheap he
 _COURSE_STD_MAX = 0.1  # standard deviation of the speed, as a share of it: 6 degrees of the course
 _COURSE_STDS = 3.0  # of the course, by which more it may be off: over poor data it errs for as long as that
 _CAR_M = 3.0  # times the curvature: what a point of a car slips beside its heading
+_COURSE_STEP_MAX_S = 0.1  # a longer pause counts as one step
 _BACK_WITHIN = 0.7  # of the limit, to be believed again
 
 
@@ -107,6 +108,7 @@ class CourseWatch(Struct, frozen=True, kw_only=True):
         off_cos: mean cosine of the heading's angle from the course.
         off_sin: mean sine of it.
         compared_s: for how long without a stop they have been compared.
+        compared_ns: when they were compared last, monotonic; None before the first time.
         has_agreed: they agreed once.
         off_rad: by how much the heading was off when it was found to contradict the course; None while it does not.
     """
@@ -114,17 +116,19 @@ class CourseWatch(Struct, frozen=True, kw_only=True):
     off_cos: float = 1.0
     off_sin: float = 0.0
     compared_s: float = 0.0
+    compared_ns: int | None = None
     has_agreed: bool = False
     off_rad: float | None = None
 
 
 def update_course(
-    watch: CourseWatch, pad: PadPath | None, speed_std_m_s: float, config: CompanionConfig
+    watch: CourseWatch, monotonic_ns: int, pad: PadPath | None, speed_std_m_s: float, config: CompanionConfig
 ) -> CourseWatch:
     """Return the watch after a step.
 
     Args:
         watch: so far.
+        monotonic_ns: of this step.
         pad: now, with the vehicle's heading and course.
         speed_std_m_s: of the vehicle's velocity; infinite while that is not known.
         config: all numbers.
@@ -134,18 +138,19 @@ def update_course(
     (vx, vy), (ax, ay) = pad.velocity_enu_m_s[0, :2].tolist(), pad.acceleration_enu_m_s2[0, :2].tolist()
     speed_m_s = math.hypot(vx, vy)
     if speed_m_s < config.integrity.course_speed_min_m_s:
-        return watch if watch.compared_s == 0.0 else replace(watch, compared_s=0.0)
+        return watch if watch.compared_ns is None else replace(watch, compared_s=0.0, compared_ns=None)
     if speed_std_m_s > _COURSE_STD_MAX * speed_m_s:
         return watch
-    step_s = 1.0 / config.setpoints.rate_hz
+    step_s = 0.0 if watch.compared_ns is None else min((monotonic_ns - watch.compared_ns) * 1e-9, _COURSE_STEP_MAX_S)
     compared_s = watch.compared_s + step_s
-    share = step_s / min(compared_s, _COURSE_OVER_S)
+    share = step_s / min(compared_s, _COURSE_OVER_S) if compared_s > 0.0 else 1.0
     off_rad = pad.yaw_rad - math.atan2(vy, vx)
     watch = replace(
         watch,
         off_cos=watch.off_cos + share * (math.cos(off_rad) - watch.off_cos),
         off_sin=watch.off_sin + share * (math.sin(off_rad) - watch.off_sin),
         compared_s=compared_s,
+        compared_ns=monotonic_ns,
     )
     slip_rad = _CAR_M * abs(vx * ay - vy * ax) / speed_m_s**3
     unsure_rad = _COURSE_STDS * speed_std_m_s / speed_m_s

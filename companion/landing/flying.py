@@ -85,7 +85,9 @@ def fly(
     if model.reference is None:
         return memory, None
     period_s = 1.0 / system.config.setpoints.rate_hz
-    reference = _at_drone(memory, _model_at(model, inputs.monotonic_ns, period_s), situation, system.config)
+    since_s = _since_plan_s(model, inputs.monotonic_ns, period_s)
+    now = extrapolate(model.reference, since_s - period_s) if model.plan is None else state_at(model.plan, since_s)
+    reference = _at_drone(memory, now, situation, system.config)
     memory = replace(memory, model=(model := replace(model, reference=reference)))
     reference_ns = inputs.monotonic_ns + round(period_s * 1e9)
     limits = _plan_limits(memory, situation, inputs, system.config)
@@ -113,7 +115,7 @@ def fly(
         plan=flown,
         guidance=guidance,
         tracking=add_to_past(model.tracking, reference_ns, plan.next_state),
-        yaw_setpoint_rad=_slew_yaw_rad(memory, situation.pad, period_s, system.config),
+        yaw_setpoint_rad=_slew_yaw_rad(memory, situation.pad, since_s, system.config),
     )
     return _update_anchor(replace(memory, model=model), situation, system.config), plan
 
@@ -126,12 +128,9 @@ def _plan_limits(memory: StepMemory, situation: Situation, inputs: StepInputs, c
     return limit_rates(limits, memory, situation, inputs.shaping, config)
 
 
-def _model_at(model: ModelMemory, monotonic_ns: int, period_s: float) -> ReferenceState:
-    """Return the virtual model now: the last plan led to `reference_ns`, and this step may come earlier or later."""
-    if model.reference is None:
-        raise ValueError("nothing is flown")
-    off_s = max(min((monotonic_ns - model.reference_ns) * 1e-9, _STEP_MAX_S), -period_s)
-    return extrapolate(model.reference, off_s) if model.plan is None else state_at(model.plan, period_s + off_s)
+def _since_plan_s(model: ModelMemory, monotonic_ns: int, period_s: float) -> float:
+    """Return how long ago the last plan was made: it led to `reference_ns`, and this step may come earlier or later."""
+    return period_s + max(min((monotonic_ns - model.reference_ns) * 1e-9, _STEP_MAX_S), -period_s)
 
 
 def _for_the_drone(target: Target, memory: StepMemory, inputs: StepInputs) -> Target:

@@ -12,7 +12,6 @@ from companion.runtime.computer import ComputerWatch
 from companion.runtime.live_state import Onlooker, onlookers
 from companion.runtime.node import CompanionNode
 from companion.runtime.options import Links, LoopOptions, Timings
-from companion.runtime.pad_question import PadQuestion
 from companion.runtime.recorded_node import RecordingNode
 from companion.runtime.sent_frames import SentFrames
 from companion.runtime.start_and_handover import OwnStart, hand_over
@@ -26,6 +25,7 @@ from link.program.clock import Clock, ClockTick, SimulatedClock, SystemClock, sp
 from link.program.service import Service
 from link.recording.log import Log
 from link.recording.recorder import BackgroundRecorder, Recorder
+from link.zenoh.pad_question import PadQuestion
 
 _WAIT_MAX_S = 0.005  # for bytes; Zenoh samples wait no longer than this
 

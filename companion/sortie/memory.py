@@ -1,14 +1,15 @@
 """The memory of a sortie, from its launch or first station until the drone is home, and how long its battery lasts.
 
-BATTERY_STATUS has the share in whole percents. Between two changes of it the time tells the rate of use, over the last
-half minute or more of this flight. What is left is taken for a percent less than told, and for less by what the rate
-has used since the last change, so that it also falls where nothing tells it any more.
+BATTERY_STATUS has the share in whole percents. Between two new lows of it the time tells the rate of use, over the last
+half minute or more of this flight; it also rises, where a voltage recovers that had sagged. What is left is taken for a
+percent less than told, and for less by what the rate has used since the last change, so that it also falls where
+nothing tells it any more.
 """
 
 import math
 
 import numpy as np
-from msgspec import Struct, field
+from msgspec import Struct
 
 from companion.core.data import Array
 from companion.core.reasons import Cause
@@ -20,7 +21,7 @@ RESOLUTION = 0.01
 _SPAN_MIN_S = 30.0
 """No rate is taken over less: a dash takes two to three times a hover's power for some seconds, and the voltage that
 sags under it has two percents told at once."""
-_CHANGES_MAX = 8  # one in 12 s at 20 minutes' endurance: the rate of the last minute and a half
+_LOWS_MAX = 8  # one in 12 s at 20 minutes' endurance: the rate of the last minute and a half
 
 
 class BatteryWatch(Struct, frozen=True, kw_only=True):
@@ -28,27 +29,35 @@ class BatteryWatch(Struct, frozen=True, kw_only=True):
 
     Attributes:
         share: that was told last, 0 to 1; None before the first.
-        changes: (monotonic ns, share) each time that it became less, oldest first.
+        told_ns: when it changed last, monotonic.
+        lows: (monotonic ns, share) each time that it became less than ever before, oldest first.
     """
 
     share: float | None = None
-    changes: tuple[tuple[int, float], ...] = ()
+    told_ns: int = 0
+    lows: tuple[tuple[int, float], ...] = ()
+
+
+UNTOLD = BatteryWatch()
+"""Before a flight."""
 
 
 def update_battery(watch: BatteryWatch, share: float | None, monotonic_ns: int) -> BatteryWatch:
-    """Return the watch after what is told now; a battery that has become fuller is another one."""
+    """Return the watch after what is told now."""
     if share is None or share == watch.share:
         return watch
-    if watch.share is None or share > watch.share:
-        return BatteryWatch(share=share)
-    return replace(watch, share=share, changes=(*watch.changes, (monotonic_ns, share))[-_CHANGES_MAX:])
+    told = replace(watch, share=share, told_ns=monotonic_ns)
+    lowest = watch.lows[-1][1] if watch.lows else watch.share
+    if lowest is None or share >= lowest:
+        return told
+    return replace(told, lows=(*watch.lows, (monotonic_ns, share))[-_LOWS_MAX:])
 
 
 def use_per_s(watch: BatteryWatch) -> float | None:
-    """Return the share that is used in a second, None until it has changed at two times."""
-    if len(watch.changes) < 2:
+    """Return the share that is used in a second, None until it has become less at two times."""
+    if len(watch.lows) < 2:
         return None
-    (first_ns, first), (last_ns, last) = watch.changes[0], watch.changes[-1]
+    (first_ns, first), (last_ns, last) = watch.lows[0], watch.lows[-1]
     if last_ns <= first_ns:
         return None
     return (first - last) / max((last_ns - first_ns) * 1e-9, _SPAN_MIN_S)
@@ -64,7 +73,7 @@ def left_s(watch: BatteryWatch, reserve_share: float, monotonic_ns: int) -> floa
     rate = use_per_s(watch)
     if rate is None:
         return math.inf if watch.share - RESOLUTION > reserve_share else 0.0
-    used = rate * (monotonic_ns - watch.changes[-1][0]) * 1e-9
+    used = rate * (monotonic_ns - watch.told_ns) * 1e-9
     return max(watch.share - max(RESOLUTION, used) - reserve_share, 0.0) / rate
 
 
@@ -106,7 +115,7 @@ class SortieMemory(Struct, frozen=True, kw_only=True, eq=False):
     place_enu_m: Array | None = None
     found_since_ns: int | None = None
     quiet_since_ns: int | None = None
-    battery: BatteryWatch = field(default_factory=BatteryWatch)
+    battery: BatteryWatch = UNTOLD
     warning: Cause | None = None
 
 

@@ -3,11 +3,11 @@
 from types import SimpleNamespace
 from typing import Any
 
-from companion.runtime.pad_question import PadQuestion
 from link.messages import PadGeometry
 from link.payloads import json_messages
 from link.records import replace
 from link.zenoh.inbox import Inbox, Sample
+from link.zenoh.pad_question import PadQuestion
 
 WAKE_UP: Any = SimpleNamespace(set=lambda: None)
 KEY = "decklander/car/pad"

@@ -24,7 +24,7 @@ from companion.landing.state.memory import ControlMemory, Progress
 from companion.landing.steering.following_height import chase_floor_m
 from companion.situation.phases import OUT_PHASES, Event, Phase
 from companion.situation.situation import Situation
-from companion.sortie.memory import SortieMemory, left_s, update_battery
+from companion.sortie.memory import UNTOLD, SortieMemory, left_s, update_battery
 from companion.sortie.station import ahead_rad, intercept_s
 from link.messages import StationFrame
 from link.records import replace
@@ -66,7 +66,8 @@ SORTIE_CONDITIONS = (*LOST, *OWN_LOST, NOT_FOLLOWED)
 
 def update_sortie(sortie: SortieMemory, phase: Phase, s: Situation, config: CompanionConfig) -> SortieMemory:
     """Return the sortie with what this step tells of the vehicle's course, the deck and the battery."""
-    battery = update_battery(sortie.battery, s.autopilot.battery_share if s.autopilot.armed else None, s.monotonic_ns)
+    # Who exchanges it disarms the drone.
+    battery = update_battery(sortie.battery, s.autopilot.battery_share, s.monotonic_ns) if s.autopilot.armed else UNTOLD
     if not sortie.is_out:
         return sortie if battery is sortie.battery else replace(sortie, battery=battery)
     ahead = sortie.ahead_rad

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from companion.autopilots.ardupilot import ArduPilotDriver
 from companion.autopilots.driver import Driver
 from companion.autopilots.px4 import Px4Driver
-from companion.autopilots.state import AutopilotState, update_state
+from companion.autopilots.state import AutopilotState, shift_reports, update_state
 from link.frames.geodesy import Projection
 from link.frames.rotations import quaternion_ned_frd_from_enu_flu
 from link.mavlink.clock_map import ClockMap, with_round_trip, with_system_time
@@ -137,6 +137,20 @@ def test_other_origins_that_are_told_once_each_move_nothing(others: list[int]) -
     before = _hear(known)
     assert _hear(*doubted, state=before).view == before.view
     assert _hear(*doubted, known, *doubted[-1:], state=before).view == before.view
+
+
+@pytest.mark.parametrize("by_ns", [0, 5_000_000, -3_600_000_000_000])
+def test_utc_that_is_set_meanwhile_makes_no_doubled_origin_believed(by_ns: int) -> None:
+    other = _origin(475_000_200, 80_000_000, 400_000)
+    doubted = _hear(_origin(475_000_000, 80_000_000, 400_000), LEVEL, _at(0, (0.0, 0.0, 0.0)), other)
+    put_off = shift_reports(doubted, by_ns)
+    assert _hear(other, state=put_off).view.frame_moves.origin_count == 1
+
+
+def test_step_of_the_drones_own_place_is_put_off_with_its_report() -> None:
+    stepped = shift_reports(_hear(LEVEL, _at(0, (0.0, 0.0, 0.0)), _at(20, (5.0, 0.0, 0.0))), 5_000_000)
+    assert stepped.own is not None
+    assert stepped.view.frame_moves.stepped_ns == stepped.own.t_ns
 
 
 @pytest.mark.parametrize(

@@ -8,11 +8,11 @@ from rosbags.typesys.stores import ros2_humble as ros
 
 from companion.check.vehicle_reading import VehicleReader
 from companion.config.integrity import IntegrityConfig
-from companion.runtime.pad_question import PadQuestion
 from link.frames.rotations import quaternion_from_yaw
 from link.messages import Fix, FixVelocity, VehicleImu
 from link.payloads import cdr
 from link.zenoh.inbox import Inbox
+from link.zenoh.pad_question import PadQuestion
 
 START_NS = 1_795_000_000_000_000_000
 PERIOD_NS = 100_000_000

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from companion.eyes.attitude import GAP_MAX_NS, Attitude, attitude_at
+from companion.eyes.attitude import GAP_MAX_NS, Attitude, attitude_at, with_attitude
 from companion.eyes.board import load_board, nested_board
 from companion.eyes.camera import matrix_of
 from companion.eyes.node import EyesNode
@@ -90,6 +90,35 @@ def test_frames_of_another_size_than_the_calibrations_are_an_error() -> None:
     small = captured(case(4.0, board=BOARD)).shades[:480, :640]
     with pytest.raises(UserError, match="640 x 480"):
         EyesNode(system(), KEYS).look(Captured(t_ns=1, shades=small), shows=False)
+
+
+def test_later_frame_of_another_size_is_somebody_elses_and_told_once() -> None:
+    one = captured(case(4.0, board=BOARD))
+    node = EyesNode(system(), KEYS)
+    assert node.look(one, shows=False)
+    for _ in range(2):
+        assert node.look(Captured(t_ns=one.t_ns, shades=one.shades[:480, :640]), shows=True) == []
+    assert [line for line in node.take_news() if "640 x 480" in line] == [
+        "pictures of 640 x 480 pixels are passed over: the calibration is for {} x {}".format(*one.size_px)
+    ]
+    assert node.look(one, shows=False)
+
+
+def test_pad_that_does_not_fit_is_told_and_ends_nothing_once_the_board_has_been_seen() -> None:
+    node = EyesNode(system(), KEYS)
+    node.look(captured(case(4.0, board=BOARD)), shows=False)
+    node.receive_pad(PadGeometry(size_m=(0.5, 0.5), height_m=1.5, antenna_to_pad_m=(0.0, 0.0, 0.0)))
+    assert [line for line in node.take_news() if "the vehicle's pad 0.5 x 0.5 m" in line]
+    assert node.look(captured(case(4.0, board=BOARD)), shows=False)
+
+
+def test_attitudes_are_kept_where_one_is_told_twice_and_not_where_the_clock_is_set_back() -> None:
+    history: tuple[Attitude, ...] = ()
+    for t_ns in (10, 20, 20, 30, 30):
+        history = with_attitude(history, Attitude(t_ns=t_ns, orientation_wxyz=quaternion_from_yaw(0.01 * t_ns)))
+    assert [one.t_ns for one in history] == [10, 20, 30]
+    back = Attitude(t_ns=29, orientation_wxyz=quaternion_from_yaw(0.0))
+    assert with_attitude(history, back) == (back,)
 
 
 @pytest.mark.parametrize(("size_m", "fits"), [((1.5, 1.5), True), ((2.0, 3.0), True), ((1.5, 1.2), False)])

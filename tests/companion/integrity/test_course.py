@@ -31,10 +31,26 @@ def driving(off_rad: float, speed_m_s: float = 5.0, lateral_m_s2: float = 0.0) -
     )
 
 
-def course_after(watch: CourseWatch, pad: PadPath, duration_s: float = 6.0, *, std_m_s: float = STD_M_S) -> CourseWatch:
-    for _ in range(round(duration_s / STEP_S)):
-        watch = update_course(watch, pad, std_m_s, CONFIG)
+def course_after(
+    watch: CourseWatch, pad: PadPath, duration_s: float = 6.0, *, std_m_s: float = STD_M_S, step_s: float = STEP_S
+) -> CourseWatch:
+    begins_ns = 0 if watch.compared_ns is None else watch.compared_ns
+    for step in range(1, round(duration_s / step_s) + 1):
+        watch = update_course(watch, begins_ns + round(step * step_s * 1e9), pad, std_m_s, CONFIG)
     return watch
+
+
+@pytest.mark.parametrize("step_s", [0.01, 0.02, 0.04, 0.08])
+def test_heading_is_judged_after_the_same_time_however_often_steps_are_made(step_s: float) -> None:
+    pad = driving(math.radians(40.0))
+    assert course_after(CourseWatch(), pad, 1.9, step_s=step_s).off_rad is None
+    assert course_after(CourseWatch(), pad, 2.2, step_s=step_s).off_rad is not None
+
+
+def test_pause_counts_for_a_step() -> None:
+    pad = driving(math.radians(40.0))
+    watch = update_course(course_after(CourseWatch(), pad, 1.0), 10**12, pad, STD_M_S, CONFIG)
+    assert watch.compared_s < 1.2
 
 
 @pytest.mark.parametrize("degrees", [20.0, -90.0, 180.0])
@@ -56,8 +72,9 @@ def test_slip_and_mounting_contradict_nothing(degrees: float) -> None:
 def test_white_noise_of_a_cheap_heading_contradicts_nothing() -> None:
     rng = np.random.default_rng(5)
     watch = CourseWatch()
-    for _ in range(round(60.0 / STEP_S)):
-        watch = update_course(watch, driving(float(rng.normal(0.0, math.radians(10.0)))), STD_M_S, CONFIG)
+    for step in range(round(60.0 / STEP_S)):
+        now_ns = round(step * STEP_S * 1e9)
+        watch = update_course(watch, now_ns, driving(float(rng.normal(0.0, math.radians(10.0)))), STD_M_S, CONFIG)
         assert watch.off_rad is None
 
 

@@ -8,7 +8,7 @@ from companion.landing.state.step_data import StepOutputs
 from companion.situation.phases import Phase
 from link.frames.rotations import yaw_of
 from link.records import replace
-from tests.companion.world import PAD_HEIGHT_M, UTC_AHEAD_NS, Flight, configured
+from tests.companion.world import PAD_HEIGHT_M, STEP_NS, UTC_AHEAD_NS, Flight, configured
 
 DIRECT = configured({"guidance": {"style": "direct"}})
 
@@ -63,3 +63,19 @@ def test_heading_of_the_vehicle_is_followed_only_where_wanted(follows: bool) -> 
     flight.run(4.0)
     wanted_rad = flight.vehicle.yaw_rad if follows else start_rad
     assert flight.memory.model.yaw_setpoint_rad == pytest.approx(wanted_rad)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("step_ns", [STEP_NS, 2 * STEP_NS, 4 * STEP_NS])
+def test_drone_turns_at_its_rate_however_often_steps_are_made(step_ns: int) -> None:
+    flight = Flight(config=DIRECT)
+    flight.start_and_reach(Phase.CHASE)
+    flight.run(4.0)
+    assert flight.vehicle.yaw_rad is not None
+    flight.vehicle = replace(flight.vehicle, yaw_rad=flight.vehicle.yaw_rad + 2.0)
+    before_rad = flight.memory.model.yaw_setpoint_rad
+    for _ in range(5):
+        flight.t_ns += step_ns - STEP_NS
+        flight.step()
+    turned_rad = flight.memory.model.yaw_setpoint_rad - before_rad
+    assert turned_rad == pytest.approx(5 * step_ns * 1e-9 * DIRECT.setpoints.yaw_rate_max_rad_s)

@@ -3,10 +3,10 @@
 from types import SimpleNamespace
 from typing import Any
 
-from companion.runtime.pad_question import PadQuestion
 from link.messages import VEHICLE_LENGTH_MAX_M, PadGeometry
 from link.payloads import json_messages
 from link.zenoh.inbox import Inbox, Sample
+from link.zenoh.pad_question import PadQuestion
 from scenarios.vehicle_sources.pad import pad_geometry
 
 PAD = PadGeometry(size_m=(1.5, 1.2), height_m=1.6, antenna_to_pad_m=(VEHICLE_LENGTH_MAX_M, -0.1, 0.05))
