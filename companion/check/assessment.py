@@ -50,11 +50,6 @@ def assess(
     return found if vehicle is None else [*found, *assess_vehicle(vehicle, config, is_expected=expects_vehicle)]
 
 
-def is_ready(findings: Sequence[Finding]) -> bool:
-    """Return whether nothing failed."""
-    return all(finding.level is not Level.FAIL for finding in findings)
-
-
 def _firmware(seen: AutopilotFacts, wanted: AutopilotKind) -> Finding:
     if seen.vehicle_type not in MULTIROTORS:
         text = f"MAV_TYPE {seen.vehicle_type}, which is no multirotor"

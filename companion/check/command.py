@@ -12,15 +12,13 @@ from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
 
-from companion.check.assessment import is_ready
-from companion.check.findings import Finding, Level
+from companion.check.findings import Finding, Level, advised_values, is_ready, keep, read_kept
 from companion.runtime.command_line import ConfigOption, MavlinkArguments
 from link.errors import UserError
 from link.program.cli import JsonOption, SetOption
 from link.zenoh.command_line import NameArguments, ZenohArguments
 
 if TYPE_CHECKING:
-    from companion.check.findings import Finding
     from companion.check.session import CheckSession
     from companion.config.companion import CompanionConfig
     from link.mavlink.signing import Signing
@@ -104,8 +102,6 @@ def check(
 
 
 def _values_to_restore(path: Path) -> dict[str, float]:
-    from companion.check.findings import read_kept
-
     values = read_kept(path)
     if not values:
         raise UserError(f"--restore {path}: holds no parameters; name the file that --write kept")
@@ -138,7 +134,7 @@ def _find(
     return session
 
 
-def _look(session: "CheckSession", asked: _Question) -> "list[Finding]":
+def _look(session: "CheckSession", asked: _Question) -> list[Finding]:
     from companion.check.assessment import assess, assess_links
     from companion.check.detector import judge_detector
 
@@ -155,10 +151,7 @@ def _look(session: "CheckSession", asked: _Question) -> "list[Finding]":
     return [*seen, *judge_detector(detector, asked.speed_m_s, asked.config), *assess_links(asked.open_links)]
 
 
-def _show(findings: "list[Finding]", speed_m_s: float, *, as_json: bool) -> int:
-    from companion.check.assessment import is_ready
-    from companion.check.command import as_table, print_table
-
+def _show(findings: list[Finding], speed_m_s: float, *, as_json: bool) -> int:
     if as_json:
         sys.stdout.write(json.dumps(as_table(findings, speed_m_s), indent=2) + "\n")
     else:
@@ -166,10 +159,8 @@ def _show(findings: "list[Finding]", speed_m_s: float, *, as_json: bool) -> int:
     return 0 if is_ready(findings) else _FAILED
 
 
-def set_advised(session: "CheckSession", findings: "list[Finding]", keep_file: Path, *, asks: bool) -> None:
+def set_advised(session: "CheckSession", findings: list[Finding], keep_file: Path, *, asks: bool) -> None:
     """Keep the present values, then write the advised ones, unless the user says no."""
-    from companion.check.findings import advised_values, keep
-
     advised = advised_values(findings)
     if not advised:
         return

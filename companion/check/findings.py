@@ -39,6 +39,11 @@ class Finding:
     set_to: float | None = None
 
 
+def is_ready(findings: Sequence[Finding]) -> bool:
+    """Return whether nothing failed."""
+    return all(finding.level is not Level.FAIL for finding in findings)
+
+
 def pass_line(name: str, found: str) -> Finding:
     """Return a line that asks for nothing."""
     return Finding(name=name, level=Level.PASS, found=found)

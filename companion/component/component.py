@@ -10,7 +10,6 @@ from companion.component.pad_messages import adsb_vehicle, follow_target
 from companion.component.parameters import answers
 from companion.config.autopilot import PadOnMap
 from companion.config.companion import CompanionConfig
-from companion.core.reasons import Reason
 from companion.landing.state.step_data import StepOutputs
 from companion.situation.phases import FLYING_PHASES, Phase
 from link.mavlink.dialect import (
@@ -30,7 +29,6 @@ _LASTS_NS = 1_000_000_000  # what holds a landing up for less is not told
 _APART_NS = 5_000_000_000
 _WARNED_OF = frozenset({Phase.ABORT, Phase.HOLD, Phase.PILOT, Phase.RALLY})
 _TOLD_IN = frozenset({Phase.CHASE.value, Phase.ALIGN.value, Phase.DESCEND.value})
-_PLAIN = frozenset({Reason.OVER_PAD.name, Reason.ALIGNED.name})
 
 
 def cut_text(text: str, severity: int = mavlink.MAV_SEVERITY_INFO) -> Message:

@@ -154,7 +154,7 @@ _PLAN_POINTS = 2  # every so many points of the plan are published
 
 def status_publication(keys: Keys, status: LandingStatus) -> Publication:
     """Return the status as JSON."""
-    return Publication(keys.landing_status, json_messages.encode(status), "application/json")
+    return Publication(keys.landing_status, json_messages.encode(status), json_messages.JSON_ENCODING)
 
 
 def plan_publication(keys: Keys, plan: PlanResult, t_ns: int, yaw_rad: float) -> Publication:

@@ -29,12 +29,11 @@ _PLACE = itemgetter(0)
 
 
 class Entry(Struct, Generic[S], frozen=True, kw_only=True, eq=False):
-    """A measurement and its place, the filter after it, and its NIS per degree of freedom (None when not used)."""
+    """A measurement and its place, and the filter after it."""
 
     measurement: Measurement
     place: Place
     after: Snapshot[S]
-    nis_per_dof: float | None
 
 
 class DelayBuffer(Struct, Generic[S], frozen=True, kw_only=True, eq=False):
@@ -117,8 +116,8 @@ def _run(
     model: FilterModel[S], config: BufferConfig, snapshot: Snapshot[S], placed: Iterable[tuple[Place, Measurement]]
 ) -> Iterator[Entry[S]]:
     for place, measurement in placed:
-        snapshot, nis_per_dof = step(model, config, snapshot, measurement)
-        yield Entry(measurement=measurement, place=place, after=snapshot, nis_per_dof=nis_per_dof)
+        snapshot = step(model, config, snapshot, measurement)
+        yield Entry(measurement=measurement, place=place, after=snapshot)
 
 
 def _prune(buffer: DelayBuffer[S], keep_s: float) -> DelayBuffer[S]:
@@ -153,7 +152,6 @@ class BufferHealth(Struct, frozen=True, kw_only=True):
         recoveries: times the filter was opened to data it had rejected for too long.
         nis_per_dof: mean over the whole run, 1 for a consistent filter; None before the second measurement.
         nis_dof: degrees of freedom that it is the mean of.
-        recent_nis_per_dof: the same over what the buffer holds, rejected data included.
         sightings: of the pad, accepted and rejected.
         moves_to_sightings: times the pad was moved to where sightings had it that were rejected for too long.
     """
@@ -164,7 +162,6 @@ class BufferHealth(Struct, frozen=True, kw_only=True):
     recoveries: int
     nis_per_dof: float | None
     nis_dof: int
-    recent_nis_per_dof: float | None
     sightings: tuple[int, int] = (0, 0)
     moves_to_sightings: int = 0
 
@@ -200,7 +197,6 @@ class BufferedEstimator(Struct, Generic[S], frozen=True, kw_only=True):
     def health(self, memory: DelayBuffer[S] | None) -> BufferHealth:
         """Return the counters and the consistency of the memory."""
         tally = Tally() if memory is None else memory.newest.tally
-        recent = [] if memory is None else [e.nis_per_dof for e in memory.entries if e.nis_per_dof is not None]
         return BufferHealth(
             fused=tally.fused,
             gated=tally.gated,
@@ -208,7 +204,6 @@ class BufferedEstimator(Struct, Generic[S], frozen=True, kw_only=True):
             recoveries=tally.recoveries,
             nis_per_dof=tally.nis_sum / tally.nis_dof if tally.nis_dof else None,
             nis_dof=tally.nis_dof,
-            recent_nis_per_dof=sum(recent) / len(recent) if recent else None,
             sightings=tally.sightings,
             moves_to_sightings=tally.moves_to_sightings,
         )

@@ -134,35 +134,32 @@ def is_forgotten(config: BufferConfig, snapshot: Snapshot[S], t_ns: int) -> bool
     return t_ns - snapshot.told_ns > config.forget_after_s * 1e9
 
 
-def step(
-    model: FilterModel[S], config: BufferConfig, snapshot: Snapshot[S], measurement: Measurement
-) -> tuple[Snapshot[S], float | None]:
+def step(model: FilterModel[S], config: BufferConfig, snapshot: Snapshot[S], measurement: Measurement) -> Snapshot[S]:
     """Predict to the measurement, then fuse it, gate it, or recover on it."""
     t_ns = measurement.t_ns
     is_of_drone = measurement.quantity in OF_DRONE
     if snapshot.state is None or is_forgotten(config, snapshot, t_ns):
         waits: Snapshot[S] = Snapshot(t_ns=t_ns, told_ns=snapshot.told_ns, state=None, tally=snapshot.tally)
-        return waits if is_of_drone else _start(model, snapshot, measurement), None
+        return waits if is_of_drone else _start(model, snapshot, measurement)
     state, told_ns = snapshot.state, snapshot.told_ns if is_of_drone else t_ns
     if t_ns > snapshot.t_ns:
         state = model.predict(state, (t_ns - snapshot.t_ns) * 1e-9)
     if measurement.quantity is Quantity.FRAME_STEP:
         state = model.move_frame(state, measurement)
-        return Snapshot(t_ns=t_ns, told_ns=told_ns, state=state, tally=snapshot.tally), None
+        return Snapshot(t_ns=t_ns, told_ns=told_ns, state=state, tally=snapshot.tally)
     update = model.update(state, measurement)
     if update is None:
-        return Snapshot(t_ns=t_ns, told_ns=told_ns, state=state, tally=snapshot.tally), None
+        return Snapshot(t_ns=t_ns, told_ns=told_ns, state=state, tally=snapshot.tally)
     rank = RANK[measurement.quantity]
-    nis_per_dof = update.nis / update.dof
     if update.gate_nis <= nis_threshold(config.gate_probability, update.dof):
         tally = _accept(snapshot.tally, rank, t_ns, update)
-        return Snapshot(t_ns=t_ns, told_ns=told_ns, state=update.state, tally=tally), nis_per_dof
+        return Snapshot(t_ns=t_ns, told_ns=told_ns, state=update.state, tally=tally)
     since_ns = snapshot.tally.rejected_since_ns[rank]
     is_new = since_ns is None or t_ns - since_ns < config.recover_after_s * 1e9
     if is_new or is_of_drone:
         tally = _reject(snapshot.tally, rank, t_ns)
-        return Snapshot(t_ns=t_ns, told_ns=told_ns, state=state, tally=tally), nis_per_dof
-    return _recover(model, state, snapshot.tally, measurement), nis_per_dof
+        return Snapshot(t_ns=t_ns, told_ns=told_ns, state=state, tally=tally)
+    return _recover(model, state, snapshot.tally, measurement)
 
 
 def _start(model: FilterModel[S], snapshot: Snapshot[S], measurement: Measurement) -> Snapshot[S]:

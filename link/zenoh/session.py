@@ -14,6 +14,7 @@ from typing import Self
 import zenoh
 
 from link.payloads.checks import PayloadError
+from link.payloads.json_messages import JSON_ENCODING
 from link.zenoh.inbox import Alive, Inbox, Sample, WakeUp
 from link.zenoh.library_config import is_matched, open_library_session
 from link.zenoh.options import DEFAULT_ENDPOINT, ZenohOptions
@@ -101,7 +102,7 @@ class ZenohSession:
         self._held.append(self._session.liveliness().declare_subscriber(key, receive, history=True))
         return alive
 
-    def serve(self, key: str, handler: Callable[[bytes], bytes], encoding: str = "application/json") -> None:
+    def serve(self, key: str, handler: Callable[[bytes], bytes], encoding: str = JSON_ENCODING) -> None:
         """Answer queries on `key` by `handler(payload)`, called on a thread of Zenoh's.
 
         A ValueError of the handler is answered as an error, with its text.
@@ -129,7 +130,7 @@ class ZenohSession:
             payload = b"" if query.payload is None else query.payload.to_bytes()
 
             def reply(answer: bytes) -> None:
-                encoding = zenoh.Encoding("application/json")
+                encoding = zenoh.Encoding(JSON_ENCODING)
                 self._replies.put(query, lambda: query.reply(key, answer, encoding=encoding))
 
             take(payload, reply)

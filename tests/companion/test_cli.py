@@ -1,5 +1,6 @@
 """The `companion` command: help and mistakes, without a flight."""
 
+import subprocess
 import sys
 from pathlib import Path
 
@@ -39,3 +40,10 @@ def test_mistake_is_told_before_the_numerics_are_loaded(
     monkeypatch.setitem(sys.modules, "companion.runtime.build", None)  # whoever imports it now, fails
     assert run_app("companion", app, ["--mavlink", "udpin:127.0.0.1:0", *arguments]) == 2
     assert named in capsys.readouterr().err
+
+
+def test_help_loads_no_numerics_and_no_network() -> None:
+    heavy = {"scipy", "numba", "osqp", "zenoh", "cv2"}
+    code = f"import sys, companion.app; print({heavy} & set(sys.modules))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "set()"

@@ -99,9 +99,7 @@ class KnownVehicle:
         return memory
 
     def health(self, _memory: int | None) -> BufferHealth:
-        return BufferHealth(
-            fused=0, gated=0, late=0, recoveries=0, nis_per_dof=None, nis_dof=0, recent_nis_per_dof=None
-        )
+        return BufferHealth(fused=0, gated=0, late=0, recoveries=0, nis_per_dof=None, nis_dof=0)
 
 
 def fix(t_ns: int) -> Measurement:

@@ -29,8 +29,7 @@ class Tracking(Struct, frozen=True, kw_only=True, eq=False):
 
     Attributes:
         past: (monotonic ns, position (3,), velocity (3,) in W), oldest first.
-        behind_enu_m: (3,) from the drone to the model at the time of the drone's newest report.
-        error_m: length of that.
+        error_m: from the drone to the model at the time of its newest report.
         deviation: (4, 2) horizontal state of `ResponseModel` then: from the model to the drone, and what moves it.
         air_enu_m_s2: (2,) horizontal thrust by mass that holds against the air, a mean of the last second.
         velocity_enu_m_s: (2,) horizontal velocity of the drone then.
@@ -38,7 +37,6 @@ class Tracking(Struct, frozen=True, kw_only=True, eq=False):
     """
 
     past: tuple[tuple[int, Array, Array], ...] = ()
-    behind_enu_m: Array = field(default_factory=lambda: np.zeros(3))
     error_m: float = 0.0
     deviation: Array = field(default_factory=lambda: np.zeros((STATES, 2)))
     air_enu_m_s2: Array = field(default_factory=lambda: np.zeros(2))
@@ -78,7 +76,6 @@ def update_tracking(
     since_s = math.inf if before_ns is None else (own_ns - before_ns) * 1e-9
     tracking = replace(
         tracking,
-        behind_enu_m=behind,
         error_m=math.hypot(*behind.tolist()),
         compared_ns=own_ns,
         air_enu_m_s2=_update_air(tracking, own, since_s),

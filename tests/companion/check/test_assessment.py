@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 
 from companion.autopilots.choice import driver_for
-from companion.check.assessment import MOTION, assess, is_ready
-from companion.check.findings import Level, advised_values
+from companion.check.assessment import MOTION, assess
+from companion.check.findings import Level, advised_values, is_ready
 from companion.check.observation import AutopilotFacts, VehicleFacts
 from companion.config.companion import CompanionConfig
 from link.errors import UserError

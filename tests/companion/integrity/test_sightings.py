@@ -125,7 +125,6 @@ def health(accepted: int, rejected: int, moves: int = 0) -> BufferHealth:
         recoveries=0,
         nis_per_dof=None,
         nis_dof=0,
-        recent_nis_per_dof=None,
         sightings=(accepted, rejected),
         moves_to_sightings=moves,
     )

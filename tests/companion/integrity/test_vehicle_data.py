@@ -12,9 +12,7 @@ HALF_NS = 500_000_000
 
 
 def health(fused: int, gated: int) -> BufferHealth:
-    return BufferHealth(
-        fused=fused, gated=gated, late=0, recoveries=0, nis_per_dof=None, nis_dof=0, recent_nis_per_dof=None
-    )
+    return BufferHealth(fused=fused, gated=gated, late=0, recoveries=0, nis_per_dof=None, nis_dof=0)
 
 
 def after(per_half_second: list[tuple[int, int]]) -> Contradictions:
