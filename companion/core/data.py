@@ -15,6 +15,9 @@ from link.messages import Quaternion, Vector3
 
 Array = NDArray[np.float64]
 
+STEP_MAX_S = 0.1
+"""A longer pause between two steps counts for so much: nothing that moves with the steps jumps."""
+
 
 class Quantity(Enum):
     """What a measurement measures, each with the frame of its value."""

@@ -16,11 +16,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from companion.eyes.finding.choosing import DECK_TILT_STD_RAD
+
 Array = NDArray[np.float64]
 
 _EVERY_NS = 500_000_000  # what is off in one frame is in the next one as well
 _RANGE_MAX_M = 3.0  # farther away the normal is told by a tag's perspective alone
-_DECK_TILT_STD_RAD = 0.1  # roads of up to 12 % (7 degrees), and a body's roll on its springs
 _SEEN_STD_RAD = 0.02  # of one comparison: attitudes of autopilots in motion are good to 1 degree
 _CAMERA_STD_RAD = 0.2  # before anything was seen
 _STDS = 3.0
@@ -45,7 +46,7 @@ class Turned(NamedTuple):
 
 def no_alignment() -> Alignment:
     """Return what is known before a pad was seen."""
-    stds = np.array([_CAMERA_STD_RAD, _CAMERA_STD_RAD, _DECK_TILT_STD_RAD, _DECK_TILT_STD_RAD])
+    stds = np.array([_CAMERA_STD_RAD, _CAMERA_STD_RAD, DECK_TILT_STD_RAD, DECK_TILT_STD_RAD])
     return Alignment(t_ns=None, information=np.diag(stds**-2), vector=np.zeros(4))
 
 

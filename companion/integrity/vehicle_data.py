@@ -17,6 +17,7 @@ from msgspec import Struct
 
 from companion.config.companion import CompanionConfig
 from companion.config.integrity import ReceiverFrames
+from companion.core.data import STEP_MAX_S
 from companion.core.reasons import Cause, Reason
 from companion.situation.situation import Situation
 from companion.vehicle.estimator import BufferHealth
@@ -97,7 +98,6 @@ _COURSE_OVER_S = 2.0  # heading and course are compared over so long: a cheap he
 _COURSE_STD_MAX = 0.1  # standard deviation of the speed, as a share of it: 6 degrees of the course
 _COURSE_STDS = 3.0  # of the course, by which more it may be off: over poor data it errs for as long as that
 _CAR_M = 3.0  # times the curvature: what a point of a car slips beside its heading
-_COURSE_STEP_MAX_S = 0.1  # a longer pause counts as one step
 _BACK_WITHIN = 0.7  # of the limit, to be believed again
 
 
@@ -141,7 +141,7 @@ def update_course(
         return watch if watch.compared_ns is None else replace(watch, compared_s=0.0, compared_ns=None)
     if speed_std_m_s > _COURSE_STD_MAX * speed_m_s:
         return watch
-    step_s = 0.0 if watch.compared_ns is None else min((monotonic_ns - watch.compared_ns) * 1e-9, _COURSE_STEP_MAX_S)
+    step_s = 0.0 if watch.compared_ns is None else min((monotonic_ns - watch.compared_ns) * 1e-9, STEP_MAX_S)
     compared_s = watch.compared_s + step_s
     share = step_s / min(compared_s, _COURSE_OVER_S) if compared_s > 0.0 else 1.0
     off_rad = pad.yaw_rad - math.atan2(vy, vx)
@@ -199,6 +199,6 @@ def unverified(s: Situation, c: CompanionConfig) -> tuple[str, ...]:
         return (Unverified.PLACE.value,) if pad.frame_offset.is_confirmed else ()
     if pad.frame_offset.is_confirmed:
         return ()
-    off_m = _LATE_S * math.hypot(*pad.velocity_enu_m_s[0, :2].tolist())
+    off_m = _LATE_S * pad.ground_speed_m_s
     stamps = Unverified.STAMPS.value.format(late_s=_LATE_S, off_m=off_m)
     return (stamps, *((Unverified.FRAMES.value,) if c.integrity.receiver_frames is ReceiverFrames.AUTO else ()))

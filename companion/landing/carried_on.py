@@ -229,7 +229,7 @@ def _rate_of(error_m: float, shaping: Shaping) -> float:
 
 def _followed_m_s(memory: StepMemory, situation: Situation) -> float:
     """Return how fast the vehicle is, or the station that is kept beside it: outside in a bend that is faster."""
-    vehicle_m_s = 0.0 if situation.pad is None else math.hypot(*situation.pad.velocity_enu_m_s[0, :2].tolist())
+    vehicle_m_s = 0.0 if situation.pad is None else situation.pad.ground_speed_m_s
     follows = memory.progress.phase is Phase.FOLLOW
     return max(vehicle_m_s, station_speed_m_s(memory.sortie, situation)) if follows else vehicle_m_s
 

@@ -10,7 +10,7 @@ from companion.landing.decisions.aborts import why_unplaced
 from companion.landing.decisions.conditions import is_fix_old
 from companion.landing.sortie.aims import rally_point_enu_m
 from companion.landing.sortie.events import has_not_left_deck, home_s
-from companion.landing.sortie.over_vehicle import SPEED_SHARE, keep_out_of, stands_on_deck
+from companion.landing.sortie.over_vehicle import ON_ROOF_M, SPEED_SHARE, keep_out_of, stands_on_deck
 from companion.landing.steering.following_height import chase_floor_m
 from companion.situation.phases import Event, Phase, next_phase
 from companion.situation.situation import Situation, vehicle_stands
@@ -95,11 +95,10 @@ def _out_of_reach(s: Situation, config: CompanionConfig) -> Cause | None:
         return Cause(Reason.VEHICLE_OUT_OF_RANGE, (s.approach.distance_m, config.limits.range_max_m))
     if math.isfinite(home_s(s, config)):
         return None
-    speed_m_s = math.hypot(*s.pad.velocity_enu_m_s[0, :2].tolist())
+    speed_m_s = s.pad.ground_speed_m_s
     return Cause(Reason.VEHICLE_DRIVES_OFF, (speed_m_s, SPEED_SHARE * s.limits.speed_max_m_s))
 
 
-_ON_ROOF_M = 1.0  # above or below it: the road is farther below
 _EVENTS = {
     Command.START: Event.START,
     Command.START_ANYWAY: Event.START,  # the question that it skips is asked before the step
@@ -172,9 +171,9 @@ def _rides_along(s: Situation, config: CompanionConfig) -> Cause | None:
     is_airborne = s.autopilot.armed and s.autopilot.landed is False
     if s.approach is None or s.pad is None or is_airborne or vehicle_stands(s, config.chase):
         return None
-    if not stands_on_deck(s, VEHICLE_M, _ON_ROOF_M):
+    if not stands_on_deck(s, VEHICLE_M, ON_ROOF_M):
         return None
-    return Cause(Reason.RIDES_ALONG, (math.hypot(*s.pad.velocity_enu_m_s[0, :2].tolist()),))
+    return Cause(Reason.RIDES_ALONG, (s.pad.ground_speed_m_s,))
 
 
 def _missing_for_start(situation: Situation) -> Cause | None:

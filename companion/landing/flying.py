@@ -3,7 +3,7 @@
 import numpy as np
 
 from companion.config.companion import CompanionConfig
-from companion.core.data import FlightLimits
+from companion.core.data import STEP_MAX_S, FlightLimits
 from companion.landing.carried_on import limit_rates
 from companion.landing.decisions.waiting import waits_at_m
 from companion.landing.sortie.aims import advance_way, sortie_aim
@@ -16,7 +16,6 @@ from companion.landing.steering.sway import update_sway
 from companion.landing.steering.targets import Aim, hover_aim, is_at_rest, pad_aim, stopping_point
 from companion.landing.steering.virtual_model import Tracking, add_to_past, predict_deviation
 from companion.landing.touchdown.levelling import limit_tilt, limits_now
-from companion.landing.transitions import BRAKING_M_S2
 from companion.planning.guidance import PlanRequest, PlanResult, ReferenceState, Target
 from companion.situation.phases import FLYING_PHASES, LANDING_PHASES, STATION_PHASES, Phase
 from companion.situation.situation import Drone, Situation
@@ -26,7 +25,6 @@ from link.frames.rotations import wrap_angle
 from link.records import replace
 
 _LIFT_M = 0.3  # so far above it a drone on the deck is asked to be, for PX4 takes off towards a setpoint above it
-_STEP_MAX_S = 0.1  # a longer pause does not let the virtual model jump
 
 
 def _aim(
@@ -130,7 +128,7 @@ def _plan_limits(memory: StepMemory, situation: Situation, inputs: StepInputs, c
 
 def _since_plan_s(model: ModelMemory, monotonic_ns: int, period_s: float) -> float:
     """Return how long ago the last plan was made: it led to `reference_ns`, and this step may come earlier or later."""
-    return period_s + max(min((monotonic_ns - model.reference_ns) * 1e-9, _STEP_MAX_S), -period_s)
+    return period_s + max(min((monotonic_ns - model.reference_ns) * 1e-9, STEP_MAX_S), -period_s)
 
 
 def _for_the_drone(target: Target, memory: StepMemory, inputs: StepInputs) -> Target:
@@ -224,7 +222,7 @@ def _to_lost_drone(memory: StepMemory, situation: Situation) -> StepMemory:
     )
     places = memory.places
     if phase in (Phase.ABORT, Phase.HOLD):
-        places = replace(places, anchor_enu_m=stopping_point(reference, BRAKING_M_S2))
+        places = replace(places, anchor_enu_m=stopping_point(reference))
     return replace(memory, model=model, places=places)
 
 
@@ -234,7 +232,7 @@ def _update_anchor(memory: StepMemory, situation: Situation, config: CompanionCo
     is_beside = situation.pad is not None and _is_fresh(situation, config)
     if memory.progress.phase is not Phase.ABORT or reference is None or anchor is None or not is_beside:
         return memory
-    x, y, _ = stopping_point(reference, BRAKING_M_S2)
+    x, y, _ = stopping_point(reference)
     return replace(memory, places=replace(memory.places, anchor_enu_m=np.array([x, y, anchor[2]])))
 
 

@@ -22,9 +22,6 @@ from companion.situation.situation import Situation
 from link.messages import Command, CommandReply, Order
 from link.records import replace
 
-BRAKING_M_S2 = 2.0
-"""Deceleration that the place to stop at is taken from."""
-
 _BESIDE_LANDINGS = (*OBSTACLES, *SORTIE_CONDITIONS)
 _OUTAGES = frozenset(condition.reason for condition in ABORTS if condition.is_outage)
 _COMMANDED = {
@@ -108,7 +105,7 @@ def _enter(memory: StepMemory, event: Event, cause: Cause, situation: Situation,
     if phase not in FLYING_PHASES:
         return replace(memory, model=replace(model, reference=None, tracking=Tracking()))
     if phase in (Phase.HOLD, Phase.ABORT) and model.reference is not None:
-        anchor = clear_of_vehicle(stopping_point(model.reference, BRAKING_M_S2), memory, situation, config)
+        anchor = clear_of_vehicle(stopping_point(model.reference), memory, situation, config)
         memory = replace(memory, places=replace(places, anchor_enu_m=anchor))
     return replace(memory, model=_escape(model, situation, config)) if phase is Phase.ABORT else memory
 

@@ -235,4 +235,4 @@ def vehicle_stands(situation: Situation, config: ChaseConfig) -> bool:
         return False
     std_m_s = situation.vehicle.speed_std_m_s
     unsure_m_s = config.parked_speed_stds * std_m_s if math.isfinite(std_m_s) else 0.0
-    return math.hypot(*situation.pad.velocity_enu_m_s[0, :2].tolist()) < max(config.parked_speed_m_s, unsure_m_s)
+    return situation.pad.ground_speed_m_s < max(config.parked_speed_m_s, unsure_m_s)

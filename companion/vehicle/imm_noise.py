@@ -11,6 +11,7 @@ from companion.core.data import Array
 from companion.vehicle.compiled import compiled_kernel
 from companion.vehicle.imm_kernels import BEND, CLOCK, LEAK, course
 from companion.vehicle.imm_swing import MOUNT, OWN_RATE, PITCH, ROLL, SIZE
+from companion.vehicle.small_matrices import white_jerk
 
 MOTION = 8  # leading states that the non-linear motion touches
 FOLLOWS = (0, 0, 1, 1, 1, 1, 2, 1)  # each of them: 2 is the curvature, 1 its integral, 0 its second one
@@ -18,9 +19,6 @@ ALONG_NOISE, ACROSS_NOISE, RECEIVER_NOISE, OWN_NOISE = 0, 2, 6, 7
 HEADING_NOISE, CLOCK_NOISE, CURVATURE_STD, HEADING_AT_REST = 4, 8, 9, 10  # their places in the noise
 BEND_STD, BEND_ACCELERATION_STD, BEND_LENGTH, ROAD_NOISE, LEAK_NOISE, AFLOAT = 5, 11, 12, 13, 14, 15
 OWN_RATE_NOISE = 16
-
-
-WhiteJerk = tuple[tuple[float, float, float], tuple[float, float, float], tuple[float, float, float]]
 
 
 @compiled_kernel
@@ -82,12 +80,6 @@ def process_noise(x: Array, dt_s: float, noise: Array, heave_noise: Array, tilt_
     Q[CLOCK, CLOCK], Q[LEAK, LEAK] = noise[CLOCK_NOISE] * dt_s, noise[LEAK_NOISE] * dt_s
     Q[OWN_RATE, OWN_RATE] = noise[OWN_RATE_NOISE] * dt_s
     return Q
-
-
-@compiled_kernel
-def white_jerk(d: float) -> WhiteJerk:
-    """Return what white jerk of density 1 adds within `d` to the covariance of place, velocity and acceleration."""
-    return ((d**5 / 20, d**4 / 8, d**3 / 6), (d**4 / 8, d**3 / 3, d**2 / 2), (d**3 / 6, d**2 / 2, d))
 
 
 @compiled_kernel

@@ -14,7 +14,7 @@ import numpy as np
 from companion.core.data import Array
 from companion.vehicle.compiled import compiled_kernel
 from companion.vehicle.lever import tilted_arm, turned
-from companion.vehicle.small_matrices import carried_through, times
+from companion.vehicle.small_matrices import carried_through, times, white_jerk
 
 ROLL, ROLL_RATE, PITCH, PITCH_RATE, MOUNT = 18, 19, 20, 21, 22
 OWN_RATE = 24  # the first state that is none of the deck's
@@ -130,10 +130,10 @@ def smooth_step(dt_s: float, frequency_rad_s: float, damping: float, std_m_s: fl
     for i, started in enumerate(((1.0, 0.0), (0.0, 1.0))):  # integrate w'' + 2 d f w' + f^2 w = 0
         gained = A[2, 1 + i] - started[1] + 2.0 * damping * frequency_rad_s * (A[1, 1 + i] - started[0])
         A[0, 1 + i] = -gained / frequency_rad_s**2
-    white_jerk = ((d**5 / 20, d**4 / 8, d**3 / 6), (d**4 / 8, d**3 / 3, d**2 / 2), (d**3 / 6, d**2 / 2, d))
+    white = white_jerk(d)
     for i in range(3):
         for j in range(3):
-            noise[i, j] = psd * white_jerk[i][j]
+            noise[i, j] = psd * white[i][j]
     for _ in range(_DOUBLINGS):
         noise = carried_through(A, noise) + noise
         A = times(A, A)

@@ -14,6 +14,7 @@ from filterpy.kalman import predict, update
 from companion.config.estimation import LkfConfig, LkfReportConfig
 from companion.core.data import Array, Forecast, Measurement, Quantity, VehicleEstimate
 from companion.vehicle.filter_step import Gaussian, Update, squared_norm, symmetric
+from companion.vehicle.small_matrices import white_jerk
 from link.records import replace
 
 I3 = np.eye(3)
@@ -76,10 +77,8 @@ class WhiteJerkNoise:
         return covariance
 
     def process(self, dt_s: float) -> Array:
-        """Return white jerk integrated over `dt_s` (Bar-Shalom, Li and Kirubarajan 2001, eq. 6.2.3-9)."""
-        d = dt_s
-        axis = np.array([[d**5 / 20, d**4 / 8, d**3 / 6], [d**4 / 8, d**3 / 3, d**2 / 2], [d**3 / 6, d**2 / 2, d]])
-        return np.kron(axis, np.diag(self._psd()))
+        """Return white jerk integrated over `dt_s`."""
+        return np.kron(np.array(white_jerk(dt_s)), np.diag(self._psd()))
 
     def position_variance(self, t_s: Array) -> Array:
         """Return the first entry of `process`, for each axis."""
@@ -94,7 +93,6 @@ class WhiteJerkNoise:
         return np.array([horizontal, horizontal, self.config.vertical_jerk_psd_m2_s5])
 
 
-I3 = np.eye(3)
 OBSERVES = {
     Quantity.POSITION: np.hstack([I3, np.zeros((3, 6))]),
     Quantity.VELOCITY: np.hstack([np.zeros((3, 3)), I3, np.zeros((3, 3))]),

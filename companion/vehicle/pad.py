@@ -86,6 +86,11 @@ class PadPath(Struct, frozen=True, kw_only=True, eq=False):
     unplaced: Cause | None = None
     frame_offset: FrameOffset = FrameOffset()
 
+    @property
+    def ground_speed_m_s(self) -> float:
+        """How fast it moves horizontally now."""
+        return math.hypot(*self.velocity_enu_m_s[0, :2].tolist())
+
 
 def pad_path(
     forecast: Forecast, pad: PadGeometry | None, *, has_one_frame: bool = True, is_confirmed: bool = True

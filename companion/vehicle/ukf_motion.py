@@ -11,6 +11,7 @@ import numpy as np
 
 from companion.core.data import Array
 from companion.vehicle.compiled import compiled_kernel
+from companion.vehicle.small_matrices import white_jerk
 
 SIZE = 8
 
@@ -69,10 +70,9 @@ def process_noise(state: Array, dt_s: float, psd: Array) -> Array:
     """
     d, heading, speed = dt_s, state[2], abs(state[3])
     Q = np.zeros((SIZE, SIZE))
-    jerk = np.array([[d**5 / 20, d**4 / 8, d**3 / 6], [d**4 / 8, d**3 / 3, d**2 / 2], [d**3 / 6, d**2 / 2, d]])
     along = np.zeros((SIZE, 3))
     along[0, 0], along[1, 0], along[3, 1], along[4, 2] = math.cos(heading), math.sin(heading), 1.0, 1.0
-    Q += psd[0] * along @ jerk @ along.T
+    Q += psd[0] * along @ np.array(white_jerk(d)) @ along.T
     Q[2, 2] = psd[3] * min(speed, 1.0) ** 2 * d
     Q[5, 5] = psd[1] / max(speed, psd[2]) ** 4 * d
     Q[6:, 6:] = psd[4] * np.array([[d**3 / 3, d**2 / 2], [d**2 / 2, d]])

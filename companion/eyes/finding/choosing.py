@@ -17,7 +17,8 @@ from companion.eyes.finding.pose import Pose, Refined
 
 Array = NDArray[np.float64]
 
-_DECK_TILT_STD_RAD = 0.1  # roads of up to 12 % (7 degrees), and a body's roll on its springs
+DECK_TILT_STD_RAD = 0.1
+"""Roads of up to 12 % (7 degrees), and a body's roll on its springs."""
 _DRONE_TILT_STD_RAD = 0.25  # of a drone of unknown attitude
 TILT_STDS_MAX = 4.0
 _MISREAD_MAX = 1e-3  # probability that the other of the two poses was the right one
@@ -84,4 +85,4 @@ def tilt_stds(R_WP: Array, *, is_level_known: bool) -> float:
         is_level_known: the drone's attitude is.
     """
     drone_rad = 0.0 if is_level_known else _DRONE_TILT_STD_RAD
-    return math.acos(min(max(float(R_WP[2, 2]), -1.0), 1.0)) / math.hypot(_DECK_TILT_STD_RAD, drone_rad)
+    return math.acos(min(max(float(R_WP[2, 2]), -1.0), 1.0)) / math.hypot(DECK_TILT_STD_RAD, drone_rad)

@@ -152,7 +152,7 @@ def _outruns(s: Situation, c: CompanionConfig) -> bool:
     """Return whether the vehicle is faster than the drone may fly, since a limit was lowered or it drives faster."""
     if s.limits is None or s.pad is None or is_fix_old(s, c):
         return False
-    return math.hypot(*s.pad.velocity_enu_m_s[0, :2].tolist()) > s.limits.speed_max_m_s
+    return s.pad.ground_speed_m_s > s.limits.speed_max_m_s
 
 
 CONTACT_RISKY = Condition(reason=Reason.CONTACT_RISKY, phases=_DESCENT, is_true=_is_contact_risky, cause=_tell_risk)

@@ -41,7 +41,7 @@ def is_drone_taken(s: Situation, _: CompanionConfig) -> bool:
 
 
 def _vehicle_speed_m_s(s: Situation) -> float:
-    return 0.0 if s.pad is None else math.hypot(*s.pad.velocity_enu_m_s[0, :2].tolist())
+    return 0.0 if s.pad is None else s.pad.ground_speed_m_s
 
 
 def _is_too_fast(s: Situation, c: CompanionConfig) -> bool:

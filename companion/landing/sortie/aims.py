@@ -10,7 +10,7 @@ import math
 import numpy as np
 
 from companion.config.companion import CompanionConfig
-from companion.core.data import Array, FlightLimits
+from companion.core.data import STEP_MAX_S, Array, FlightLimits
 from companion.landing.decisions.conditions import is_fix_old
 from companion.landing.sortie.over_vehicle import (
     WAY_SHARE,
@@ -34,8 +34,6 @@ from link.frames.geodesy import local_from_geodetic
 from link.messages import StationFrame
 from link.records import replace
 
-_STEP_MAX_S = 0.1  # a longer pause does not let the place jump
-
 
 def advance_way(memory: StepMemory, s: Situation, limits: FlightLimits, config: CompanionConfig) -> StepMemory:
     """Return the memory with the place on the way to the station moved on to this step.
@@ -50,7 +48,7 @@ def advance_way(memory: StepMemory, s: Situation, limits: FlightLimits, config: 
     here, way = turned(offset_now(pad, reference, s), -ahead), sortie.way
     if way is None or way.station != sortie.station or not is_clear(here, way.place_m, keep_out):
         way = Way(station=sortie.station, place_m=here, at_ns=s.monotonic_ns)
-    dt_s = min((s.monotonic_ns - way.at_ns) * 1e-9, _STEP_MAX_S)
+    dt_s = min((s.monotonic_ns - way.at_ns) * 1e-9, STEP_MAX_S)
     wanted, keep_out, rates = _ends_at(way, ahead, pad, limits, config)
     place = way_to(way.place_m, wanted, keep_out, np.array([0.0, dt_s]), rates)[-1]
     way = replace(way, place_m=np.asarray(place), at_ns=s.monotonic_ns)

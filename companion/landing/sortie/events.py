@@ -19,7 +19,7 @@ from companion.landing.decisions.conditions import (
 from companion.landing.decisions.entries import Decision
 from companion.landing.decisions.events import TOO_LONG
 from companion.landing.decisions.feasibility import EMPTY
-from companion.landing.sortie.over_vehicle import SPEED_SHARE, WAY_SHARE, is_deck_quiet, stands_on_deck
+from companion.landing.sortie.over_vehicle import ON_ROOF_M, SPEED_SHARE, WAY_SHARE, is_deck_quiet, stands_on_deck
 from companion.landing.state.memory import ControlMemory, Progress
 from companion.landing.steering.following_height import chase_floor_m
 from companion.situation.phases import OUT_PHASES, Event, Phase
@@ -29,7 +29,6 @@ from companion.sortie.station import ahead_rad, intercept_s
 from link.messages import StationFrame
 from link.records import replace
 
-_DECK_HEIGHT_M = 1.0  # above or below the pad: the road is farther below
 _RISEN_SHARE = 0.8  # of the height that is clear of the deck
 _TOGETHER = frozenset({Phase.LIFT_OFF, Phase.FOLLOW, Phase.RETURN})
 
@@ -186,7 +185,7 @@ def has_not_left_deck(s: Situation) -> bool:
     """Return whether the drone stands on the deck still, by its autopilot's word and, where it is known, its place."""
     if s.approach is None:
         return s.autopilot.landed is True
-    return s.autopilot.landed is not False and stands_on_deck(s, VEHICLE_M, _DECK_HEIGHT_M)
+    return s.autopilot.landed is not False and stands_on_deck(s, VEHICLE_M, ON_ROOF_M)
 
 
 def _stay_together(sortie: SortieMemory, progress: Progress, s: Situation, config: CompanionConfig) -> Decision | None:

@@ -21,6 +21,8 @@ SPEED_SHARE = 0.95
 _STDS = 2.0
 _CARRIED_M_S = 3.0  # who carries a drone beside a vehicle walks
 _TOGETHER_M_S = 1.5  # against it: of receivers without corrections each errs by some decimetres a second
+ON_ROOF_M = 1.0
+"""So far above or below the pad a drone may seem to be that stands on the vehicle: the road is farther below."""
 _BELOW_M = 0.5  # so far below the lowest station the planner's floor is: it is the last thing to be met
 
 
@@ -117,7 +119,7 @@ def _road_climb_m_s(pad: PadPath) -> float:
     """Return how fast the road rises by its grade, which is no heave."""
     velocity = pad.velocity_enu_m_s[0, :2]
     if pad.yaw_rad is None:
-        return pad.grade * math.hypot(*velocity.tolist())
+        return pad.grade * pad.ground_speed_m_s
     return pad.grade * float(velocity @ np.array([math.cos(pad.yaw_rad), math.sin(pad.yaw_rad)]))
 
 
@@ -132,7 +134,7 @@ def stands_on_deck(s: Situation, distance_max_m: float, height_max_m: float) -> 
     if a.distance_m < distance_max_m and abs(a.height_m) < height_max_m:
         return True
     stands = not s.autopilot.armed or s.autopilot.landed is True
-    moves_m_s = math.hypot(*s.pad.velocity_enu_m_s[0, :2].tolist())
+    moves_m_s = s.pad.ground_speed_m_s
     east_m, north_m, up_m = (_STDS * s.pad.position_std_m[0]).tolist()
     may_be_there = a.distance_m < distance_max_m + max(east_m, north_m) and abs(a.height_m) < height_max_m + up_m
     return stands and may_be_there and moves_m_s > _CARRIED_M_S and a.speed_m_s < _TOGETHER_M_S

@@ -16,7 +16,6 @@ from companion.sortie.station import ahead_rad, turned
 from link.messages import Command, Order, Station, StationFrame
 from link.records import replace
 
-_BRAKING_M_S2 = 2.0  # of a drone that stops before it climbs and flies to where the vehicle is to pass
 _LOOK_AHEAD_S = float(HORIZON_OFFSETS_S[-1])  # so far ahead the vehicle is forecast
 
 _OUTWARD = frozenset({Phase.LIFT_OFF, Phase.FOLLOW})
@@ -96,7 +95,7 @@ def _to_rally(memory: StepMemory, s: Situation, config: CompanionConfig) -> Step
     reference, pad = memory.model.reference, s.pad
     if reference is None:
         return memory
-    anchor, place = stopping_point(reference, _BRAKING_M_S2), None
+    anchor, place = stopping_point(reference), None
     if pad is not None:
         ahead_s = home_s(s, config) - config.limits.landing_time_s
         ahead_s = max(ahead_s if math.isfinite(ahead_s) else 0.0, _LOOK_AHEAD_S)

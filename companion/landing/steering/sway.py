@@ -12,9 +12,9 @@ from msgspec import Struct
 
 from companion.config.descent import SwayConfig
 from companion.core.data import GRAVITY_M_S2, OwnState
+from companion.landing.steering.virtual_model import UPRIGHT_MIN
 from link.frames.rotations import rotate
 
-_UPRIGHT_MIN = 0.5  # cosine of a tilt beyond which nothing is steady
 _MEAN_S = 1.0  # longer than a gust's beginning, shorter than the turn of a curve
 
 
@@ -37,7 +37,7 @@ def update_sway(sway: Sway, own: OwnState, own_ns: int, config: SwayConfig) -> S
     if sway.t_ns is not None and own_ns <= sway.t_ns:
         return sway
     x, y, up = rotate(own.orientation_wxyz, (0.0, 0.0, 1.0))
-    per_up = GRAVITY_M_S2 / max(up, _UPRIGHT_MIN)
+    per_up = GRAVITY_M_S2 / max(up, UPRIGHT_MIN)
     share = 1.0 if sway.t_ns is None else -math.expm1(-(own_ns - sway.t_ns) * 1e-9 / _MEAN_S)
     mean_x, mean_y = sway.mean_enu_m_s2
     mean = (mean_x + share * (per_up * x - mean_x), mean_y + share * (per_up * y - mean_y))

@@ -26,6 +26,7 @@ _NO_FLOOR: Array = np.full(len(HORIZON_OFFSETS_S), NO_FLOOR_M)
 _DESCENT_SHARE = 0.5  # of the vertical acceleration; the rest is for following the pad
 _DESCENT_JERK_MAX_M_S3 = 10.0  # that acceleration within 0.15 s: sooner brings nothing, and who has less needs it all
 _SHORT_SHARE = 0.5  # of the distance at which the alignment begins: a chase that aims shorter might not come there
+_BRAKING_M_S2 = 2.0  # of a drone that stops where it is
 _SLOW_M_S = 0.5  # slower than this a vehicle has no direction to speak of
 _REST_M = 0.005
 _REST_MOTION = 0.01  # m/s and m/s^2
@@ -66,7 +67,7 @@ def _largest(vector: Array) -> float:
     return float(max(map(abs, vector.tolist())))
 
 
-def stopping_point(reference: ReferenceState, deceleration_m_s2: float) -> Array:
+def stopping_point(reference: ReferenceState) -> Array:
     """Return (3,) where the virtual model comes to rest when it brakes evenly, horizontally and vertically apart.
 
     Along the velocity as a whole a fast flight with a little sink would end metres lower.
@@ -74,7 +75,7 @@ def stopping_point(reference: ReferenceState, deceleration_m_s2: float) -> Array
     velocity = reference.velocity_enu_m_s
     horizontal_m_s, vertical_m_s = math.hypot(*velocity[:2].tolist()), abs(float(velocity[2]))
     speed = np.array([horizontal_m_s, horizontal_m_s, vertical_m_s])
-    return np.asarray(reference.position_enu_m + velocity * speed / (2.0 * deceleration_m_s2))
+    return np.asarray(reference.position_enu_m + velocity * speed / (2.0 * _BRAKING_M_S2))
 
 
 def pad_aim(

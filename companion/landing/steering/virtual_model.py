@@ -18,7 +18,7 @@ from link.frames.rotations import rotate
 from link.records import replace
 
 _HISTORY_S = 0.6  # longer than any telemetry is late
-_UPRIGHT_MIN = 0.5  # cosine of a tilt beyond which nothing is steady
+UPRIGHT_MIN = 0.5  # cosine of a tilt beyond which nothing is steady
 _AIR_MEAN_S = 1.0  # longer than a gust's beginning, shorter than a change of speed
 _BREAK_S = 0.25  # between two reports, after which the deviation is what the next one shows
 _ACCELERATION_MAX_M_S2 = 10.0  # of the model between two steps: it is set back at times, and that is no motion
@@ -109,7 +109,7 @@ def tracking_error_max_m(
 def _update_air(tracking: Tracking, own: OwnState, since_s: float) -> Array:
     """Return the mean of what the drone leans beyond what accelerates it, by the change of its own velocity."""
     x, y, up = rotate(own.orientation_wxyz, (0.0, 0.0, 1.0))
-    if up < _UPRIGHT_MIN or not 0.0 < since_s < _BREAK_S:
+    if up < UPRIGHT_MIN or not 0.0 < since_s < _BREAK_S:
         return tracking.air_enu_m_s2
     changed = (np.array(own.velocity_enu_m_s[:2]) - tracking.velocity_enu_m_s) / since_s
     leans = np.array([x, y]) * (GRAVITY_M_S2 / up) - changed

@@ -160,7 +160,7 @@ def test_stopping_point_is_the_closed_form_of_even_braking() -> None:
         velocity_enu_m_s=np.array([6.0, 0.0, 0.0]),
         acceleration_enu_m_s2=np.zeros(3),
     )
-    np.testing.assert_allclose(stopping_point(moving, 2.0), [1.0 + 6.0**2 / (2.0 * 2.0), 2.0, 3.0])
+    np.testing.assert_allclose(stopping_point(moving), [1.0 + 6.0**2 / (2.0 * 2.0), 2.0, 3.0])
 
 
 def test_fast_flight_with_a_little_sink_stops_no_lower_than_the_sink_takes() -> None:
@@ -169,4 +169,4 @@ def test_fast_flight_with_a_little_sink_stops_no_lower_than_the_sink_takes() -> 
         velocity_enu_m_s=np.array([12.0, 16.0, -1.0]),
         acceleration_enu_m_s2=np.zeros(3),
     )
-    np.testing.assert_allclose(stopping_point(moving, 2.0), [1.0 + 12.0 * 5.0, 2.0 + 16.0 * 5.0, 3.0 - 0.25])
+    np.testing.assert_allclose(stopping_point(moving), [1.0 + 12.0 * 5.0, 2.0 + 16.0 * 5.0, 3.0 - 0.25])
