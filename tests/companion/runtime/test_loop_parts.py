@@ -174,7 +174,12 @@ def test_start_for_a_vehicle_that_nothing_is_heard_of_is_refused_with_what_was_r
 
 
 def test_reply_that_nobody_waits_for_is_dropped() -> None:
-    CommandDesk().answer([ACCEPTED])
+    desk = CommandDesk()
+    desk.answer([ACCEPTED])
+    later = Asker(desk, Command.ABORT)
+    assert later.reply() is None
+    desk.answer([])
+    assert later.reply() is None
 
 
 def test_timings_are_quantiles_in_milliseconds() -> None:

@@ -110,7 +110,7 @@ def test_lever_is_unknown_without_a_way_between_the_frames() -> None:
 
 def test_ring_of_transforms_ends() -> None:
     known = read(transform("a", "b", (1.0, 0.0, 0.0)), transform("b", "a", (1.0, 0.0, 0.0)))
-    foreign.lever(known, "a", "b", "landing_pad")
+    assert foreign.lever(known, "a", "b", "landing_pad") is None
 
 
 @pytest.mark.parametrize("payload", [b"", b"\0\1\0\0", odometry()[:90]])
