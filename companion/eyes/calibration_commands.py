@@ -40,7 +40,11 @@ MountingOption = Annotated[
 ]
 SizeOption = Annotated[
     tuple[int, int] | None,
-    typer.Option("--size", metavar="WIDTH HEIGHT", help="Pixels to ask of the camera [default: the calibration's]."),
+    typer.Option(
+        "--size",
+        metavar="WIDTH HEIGHT",
+        help="Pixels to ask of the camera [default: the calibration's, without one its own].",
+    ),
 ]
 
 

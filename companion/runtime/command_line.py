@@ -56,7 +56,12 @@ _SigningStampsOption = Annotated[
 ]
 _StartOption = Annotated[bool, typer.Option("--start", help="Arm, take off and land without an operator's command.")]
 _TimeoutOption = Annotated[
-    float, typer.Option("--timeout", min=0.0, help="Seconds without an autopilot or vehicle; 0 waits for ever.")
+    float,
+    typer.Option(
+        "--timeout",
+        min=0.0,
+        help="Seconds without an autopilot, with --start also without a vehicle; 0 waits for ever.",
+    ),
 ]
 _DryRunOption = Annotated[bool, typer.Option("--dry-run", help="Do everything but send setpoints and commands.")]
 _UseSimTimeOption = Annotated[bool, typer.Option("--use-sim-time", help="Follow the simulation's clock on Zenoh.")]

@@ -42,7 +42,7 @@ _NmeaOption = Annotated[
     typer.Option(
         "--nmea",
         metavar="DEVICE",
-        help="Publish what a receiver says in NMEA 0183: /dev/ttyX,BAUD, tcp://HOST:PORT or a recorded file.",
+        help="Publish what a receiver says in NMEA 0183: /dev/ttyX,BAUD, tcp://HOST:PORT, udpin:HOST:PORT or a file.",
         rich_help_panel=_RECEIVER,
     ),
 ]

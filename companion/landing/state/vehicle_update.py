@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from companion.core.data import Array, Forecast, Measurement, Quantity
+from companion.core.data import Array, Forecast, Measurement, Quantity, RangeReading
 from companion.integrity.sightings import (
     SightingWatch,
     are_frames_one,
@@ -41,7 +41,7 @@ def update_vehicle(vehicle: VehicleMemory, inputs: StepInputs, system: System) -
     vehicle = _in_present_frame(_in_present_utc(vehicle, inputs), inputs, system)
     estimator, now_ns = vehicle.estimator, inputs.monotonic_ns
     measurements, seen = inputs.vehicle.measurements, inputs.autopilot.range_down
-    if seen is not None and estimator is not None and vehicle.ranges.newest_ns != seen.t_ns <= inputs.t_ns:
+    if seen is not None and estimator is not None and _is_to_be_read(seen, vehicle.ranges, inputs.t_ns):
         then = system.estimator.forecast(estimator, seen.t_ns, _PRESENT_OFFSETS_S)
         vehicle_up_m = None if then is None else float(then.position_enu_m[0, 2])
         ranges, rises_m = watch_ranges(vehicle.ranges, seen, vehicle_up_m)
@@ -89,6 +89,11 @@ def _in_present_utc(vehicle: VehicleMemory, inputs: StepInputs) -> VehicleMemory
         sightings=SightingWatch(),
         ranges=RangeWatch(),
     )
+
+
+def _is_to_be_read(seen: RangeReading, ranges: RangeWatch, now_ns: int) -> bool:
+    """Return whether what a range finder saw is another reading than the last, and not from the future."""
+    return seen.t_ns != ranges.newest_ns and seen.t_ns <= now_ns
 
 
 def _in_present_frame(vehicle: VehicleMemory, inputs: StepInputs, system: System) -> VehicleMemory:
