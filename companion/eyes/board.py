@@ -1,12 +1,11 @@
 """The board on the pad: square tags of one family, each with its own id, at known places.
 
-Frame P: origin in the middle of the board, x forward along the vehicle, y left, z up; lengths in metres.
-A tag's upper edge, as it is printed, points forward.
+Frame P: origin in the middle of the board, x forward along the vehicle, y left, z up; lengths in metres. A tag's upper
+edge, as it is printed, points forward.
 
-The tags of a family as they are printed: squares of 8 by 8 cells, the outer ring of them black.
-
-The family 36h11 of AprilTag (Olson 2011) has 587 tags of 36 bits, any two of which differ in 11 bits or more however
-they are turned, so that up to 5 wrong bits can be mended. OpenCV has them built in.
+A printed tag has 8 by 8 cells, the outer ring of them black. The family 36h11 of AprilTag (Olson 2011) has 587 tags of
+36 bits, any two of which differ in 11 bits or more however they are turned, so that up to 5 wrong bits can be mended.
+OpenCV has them built in.
 """
 
 from dataclasses import dataclass
@@ -138,7 +137,6 @@ def load_board(path: Path | None) -> Board:
         return Board(load_config(default, BoardConfig))
 
 
-_GRID = 8  # cells of the large tag along a side, its border included
 _LARGE_SHARE = 0.8  # of the board's side: a white margin of a cell's width is left for it to be told by
 _MIDDLE_SHARE = 0.56  # of the large tag's cell
 _SMALL_SHARE = 0.226
@@ -160,11 +158,11 @@ def nested_board(size_m: float, first_id: int = 0) -> BoardConfig:
         UserError: there are not that many ids.
     """
     large_m = _LARGE_SHARE * size_m
-    cell_m = large_m / _GRID
+    cell_m = large_m / CELLS
     found = [((0.0, 0.0), large_m)]
-    for row in range(1, _GRID - 1):
-        for column in range(1, _GRID - 1):
-            center_m = ((0.5 * (_GRID - 1) - row) * cell_m, (0.5 * (_GRID - 1) - column) * cell_m)
+    for row in range(1, CELLS - 1):
+        for column in range(1, CELLS - 1):
+            center_m = ((0.5 * (CELLS - 1) - row) * cell_m, (0.5 * (CELLS - 1) - column) * cell_m)
             found.extend(_cell_tags(row, column, center_m, cell_m))
     if first_id + len(found) > ids_of("36h11"):
         raise UserError(f"a board needs {len(found)} ids and there are {ids_of('36h11')}: begin with a lower one")
@@ -179,7 +177,7 @@ def _cell_tags(
     row: int, column: int, center_m: tuple[float, float], cell_m: float
 ) -> list[tuple[tuple[float, float], float]]:
     """Return the tags within a cell of the large one, places and sides: four small ones, a middle one, or none."""
-    middle = 0.5 * (_GRID - 1)
+    middle = 0.5 * (CELLS - 1)
     is_core = max(abs(row - middle), abs(column - middle)) < _CORE
     if is_core and (row + 2 * column) % 4:
         quarter_m = 0.25 * cell_m
@@ -188,6 +186,3 @@ def _cell_tags(
     if is_core or (row + column) % 2:
         return [(center_m, _MIDDLE_SHARE * cell_m)]
     return []
-
-
-__all__ = ["CELLS", "Board", "BoardConfig", "TagConfig", "load_board", "nested_board"]

@@ -1,4 +1,4 @@
-"""Whether the drone's and the vehicle's receivers place things in one frame; pure.
+"""Whether two receivers place things in one frame, and whether what the drone sees of the pad agrees with them; pure.
 
 Each receiver states its error within its own frame. How far these are apart neither states: centimetres where both are
 corrected by one base station or network, and metres without corrections. Phases that are fixed on both are taken for
@@ -8,8 +8,6 @@ Otherwise only sightings of the pad tell the offset, which the estimate has as u
 A fixed carrier phase errs by a quarter of its wavelength at most, which is what reflections do to it
 (Hofmann-Wellenhof, Lichtenegger and Collins, "GPS: Theory and Practice", 5th edition, multipath): who states more has
 not fixed it.
-
-Whether what the drone sees of the pad agrees with the receivers, and with itself; pure.
 
 A sighting places the pad in the drone's frame, a fix in the vehicle's. Where both have one frame, a pad that is seen
 farther from its told place than both promise means that one of them is wrong: a detector that sees another pattern, or

@@ -6,12 +6,10 @@ the horizon's end with P of the infinite-horizon problem (algebraic Riccati equa
 slacks. The jerk's bounds are hard, all others soft: with finite numbers the programme is always feasible.
 All matrices are built once; a plan only makes vectors, in compiled calls.
 
-The prediction matrices of one axis: a triple integrator driven by jerk that is constant over blocks.
-
-State `x = [p, v, a]` in m, m/s, m/s^2; input the jerk `u` (m,) in m/s^3, one value per block of the horizon.
-At node time t after now, exactly,
-`p = p0 + v0 t + a0 t^2/2 + sum_i u_i (c3(t - b_i) - c3(t - e_i))`, `c3(x) = max(x, 0)^3 / 6`, for the block from
-`b_i` to `e_i`; likewise v with `c2(x) = max(x, 0)^2 / 2` and a with `c1(x) = max(x, 0)`.
+Its prediction matrices are those of a triple integrator driven by jerk that is constant over blocks. State `x = [p, v,
+a]` in m, m/s, m/s^2; input the jerk `u` (m,) in m/s^3, one value per block of the horizon. At node time t after now,
+exactly, `p = p0 + v0 t + a0 t^2/2 + sum_i u_i (c3(t - b_i) - c3(t - e_i))`, `c3(x) = max(x, 0)^3 / 6`, for the block
+from `b_i` to `e_i`; likewise v with `c2(x) = max(x, 0)^2 / 2` and a with `c1(x) = max(x, 0)`.
 """
 
 import math

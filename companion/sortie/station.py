@@ -1,4 +1,4 @@
-"""Where a station is over the horizon, and the way to it round the vehicle; pure numerics.
+"""Where a station is over the horizon, the way to it round the vehicle, and the way home; pure numerics.
 
 A station is an offset (ahead, left, up) from the pad's centre, turned by the angle at which ahead is. Ways to it are
 laid in the frame that moves and turns with the vehicle: straight where that is clear of the vehicle's cylinder, about
@@ -6,11 +6,9 @@ it at one's own distance otherwise, over it only at a height that is clear of it
 speed against the vehicle is at most sqrt(2 a d), and about the vehicle sqrt(a r): either takes no more than the
 acceleration a, so that the rest is left for what the vehicle does.
 
-How fast and how soon a drone comes to a vehicle that drives on evenly; pure numerics.
-
-With the way u to it, a unit vector, and the vehicle's velocity v, a drone that closes at s flies v + s u, which is as
-fast as its limit c allows: s = -v u + sqrt((v u)^2 + c^2 - v^2). The way against the vehicle then stays straight, so
-that it leads to where the vehicle will be.
+On the way home to a vehicle that drives on evenly, with the way u to it, a unit vector, and the vehicle's velocity v, a
+drone that closes at s flies v + s u, which is as fast as its limit c allows: s = -v u + sqrt((v u)^2 + c^2 - v^2). The
+way against the vehicle then stays straight, so that it leads to where the vehicle will be.
 """
 
 import math
