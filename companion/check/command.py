@@ -13,9 +13,9 @@ from rich.console import Console
 from rich.table import Table
 
 from companion.check.findings import Finding, Level, advised_values, is_ready, keep, read_kept
-from companion.runtime.command_line import ConfigOption, MavlinkArguments
+from companion.runtime.command_line import ConfigArguments, MavlinkArguments
 from link.errors import UserError
-from link.program.cli import JsonOption, SetOption
+from link.program.cli import JsonOption
 from link.zenoh.command_line import NameArguments, ZenohArguments
 
 if TYPE_CHECKING:
@@ -58,8 +58,7 @@ def check(
     keep_file: _KeepOption = Path("parameters_before.json"),
     restore: _RestoreOption = None,
     as_json: JsonOption = False,
-    config: ConfigOption = None,
-    changes: SetOption = None,
+    chosen: ConfigArguments,
     names: NameArguments,
     endpoints: ZenohArguments,
 ) -> int:
@@ -67,15 +66,13 @@ def check(
 
     A vehicle that is silent fails only where -e, -l, --zenoh-config or --multicast-scouting says where it is met.
     """
-    from companion.config.companion import CompanionConfig
     from companion.runtime.options import open_links
-    from link.program.settings import COMPANION, load_settings
     from link.transports.opening import open_transport
     from link.zenoh.session import open_session
 
     if keep_file.is_dir():
         raise UserError(f"--keep {keep_file}: is a folder; name a file in it")
-    settings = load_settings(config, CompanionConfig, COMPANION, changes)
+    settings = chosen.load()
     signing = mavlink.signing()
     back = None if restore is None else _values_to_restore(restore)
     options = endpoints.options()
