@@ -19,6 +19,7 @@ from link.frames.geodesy import (
     local_from_geodetic,
 )
 from link.frames.rotations import wrap_angle
+from link.mavlink.dialect import mavlink
 from link.messages import Vector3
 
 _CHART_REACH_M = 20.0
@@ -73,8 +74,13 @@ def _slope(base: Vector3, moved: Vector3) -> Vector3:
     return (latitude / _STEP_M, wrap_angle(longitude) / _STEP_M, altitude / _STEP_M)
 
 
-_REACH_M = 1e5
+REACH_M = 1e5
 """No drone gets so far from its origin; a place beyond would be on the other side of the globe."""
+ABOVE_SEA = frozenset({mavlink.MAV_FRAME_GLOBAL, mavlink.MAV_FRAME_GLOBAL_INT})
+"""MAV_FRAME of places on the globe, by what their altitude is above."""
+ABOVE_HOME = frozenset({mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT, mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT})
+ABOVE_TERRAIN = frozenset({mavlink.MAV_FRAME_GLOBAL_TERRAIN_ALT, mavlink.MAV_FRAME_GLOBAL_TERRAIN_ALT_INT})
+"""The ground is flat: as high as home."""
 
 
 class Origin(Struct, frozen=True, kw_only=True):
@@ -93,7 +99,7 @@ def local_from_world(origin: Origin, position_enu_m: Vector3) -> Vector3:
 
 def world_from_local(origin: Origin, position_enu_m: Vector3) -> Vector3:
     """Return a place in the local frame in W, m, ENU; each part of what is beyond reach is cut to it."""
-    east_m, north_m, up_m = (max(-_REACH_M, min(_REACH_M, part_m)) for part_m in position_enu_m)
+    east_m, north_m, up_m = (max(-REACH_M, min(REACH_M, part_m)) for part_m in position_enu_m)
     return enu_from_geodetic(origin.world, *geodetic_from_local(origin.frame, (east_m, north_m, up_m)))
 
 

@@ -17,7 +17,7 @@ from link.records import replace
 from sim_autopilot.core.data import Reference
 from sim_autopilot.core.land_settings import PrecisionSettings
 from sim_autopilot.core.limits import PathLimits
-from sim_autopilot.core.places import Origin, world_from_local
+from sim_autopilot.core.places import REACH_M, Origin, world_from_local
 from sim_autopilot.plant.snapshot import Snapshot
 from sim_autopilot.setpoints.path import Motion, Plane, carry_on, correction_speed, lead_to_position
 
@@ -33,8 +33,6 @@ _ACCEPTED_M = 0.15
 _LOOK_S = 0.3
 """How far ahead the height that is asked for lies, so that a held descent does not begin with a jump."""
 _FAR_M = 1e3
-_REACH_M = 1e5
-"""Of the local frame."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -79,7 +77,7 @@ def place_told(message: Message, origin: Origin) -> Vector3 | None:
     place = message.x, message.y, message.z
     if message.position_valid != 1 or message.frame != mavlink.MAV_FRAME_LOCAL_NED or not all(map(isfinite, place)):
         return None
-    return world_from_local(origin, enu_from_ned(place)) if hypot(*place) < _REACH_M else None
+    return world_from_local(origin, enu_from_ned(place)) if hypot(*place) < REACH_M else None
 
 
 def with_sighting(target: Target | None, place: Vector3, now_ns: int, settings: PrecisionSettings) -> Target:

@@ -3,15 +3,12 @@
 from math import hypot, isfinite, radians
 
 from link.frames.geodesy import Datum, enu_from_geodetic
-from link.mavlink.dialect import mavlink
 from link.messages import Vector3
 from link.records import replace
+from sim_autopilot.core.places import ABOVE_HOME, REACH_M
 from sim_autopilot.flight.flight import go_to
 from sim_autopilot.flight.travel import Goal
 from sim_autopilot.memory import AutopilotMemory, with_flight
-
-_ABOVE_HOME = frozenset({mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT, mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT})
-_REACH_M = 1e5
 
 
 def place_asked(memory: AutopilotMemory, datum: Datum, frame: int, place: tuple[float, float, float]) -> Vector3 | None:
@@ -26,10 +23,10 @@ def place_asked(memory: AutopilotMemory, datum: Datum, frame: int, place: tuple[
             x, y, high = enu_from_geodetic(datum, radians(latitude_deg), radians(longitude_deg), datum.altitude_m)
         except ValueError:
             return None
-        if hypot(x, y, high) > _REACH_M:
+        if hypot(x, y, high) > REACH_M:
             return None
     if isfinite(altitude_m):
-        z = altitude_m + (memory.places.home_enu_m[2] if frame in _ABOVE_HOME else -datum.altitude_m)
+        z = altitude_m + (memory.places.home_enu_m[2] if frame in ABOVE_HOME else -datum.altitude_m)
     return x, y, z
 
 

@@ -11,13 +11,10 @@ from types import MappingProxyType
 from link.frames.geodesy import Datum, enu_from_geodetic
 from link.mavlink.dialect import Message, mavlink
 from link.messages import Vector3
+from sim_autopilot.core.places import ABOVE_HOME, ABOVE_SEA
 
 _DEGREES_TO_WIRE = 1e7
-_ABOVE_SEA = frozenset({mavlink.MAV_FRAME_GLOBAL, mavlink.MAV_FRAME_GLOBAL_INT})
-_ABOVE_HOME = frozenset({mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT, mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT})
-_FRAMES = _ABOVE_SEA | _ABOVE_HOME | {mavlink.MAV_FRAME_MISSION}
-ABOVE_TERRAIN = frozenset({mavlink.MAV_FRAME_GLOBAL_TERRAIN_ALT, mavlink.MAV_FRAME_GLOBAL_TERRAIN_ALT_INT})
-"""Of items above the ground, which is flat: as high as home."""
+_FRAMES = ABOVE_SEA | ABOVE_HOME | {mavlink.MAV_FRAME_MISSION}
 
 MISSION, FENCE, RALLY = (
     int(kind)
@@ -196,7 +193,7 @@ def place_of(item: Item, datum: Datum, home_enu_m: Vector3) -> Vector3:
     """Return where an item that says where is, in W (ENU about `datum`, m)."""
     latitude_rad, longitude_rad = radians(item.x / _DEGREES_TO_WIRE), radians(item.y / _DEGREES_TO_WIRE)
     altitude_m = item.z if isfinite(item.z) else 0.0
-    if item.frame in _ABOVE_SEA:
+    if item.frame in ABOVE_SEA:
         return enu_from_geodetic(datum, latitude_rad, longitude_rad, altitude_m)
     east, north, _ = enu_from_geodetic(datum, latitude_rad, longitude_rad, datum.altitude_m)
     return (east, north, home_enu_m[2] + altitude_m)

@@ -14,7 +14,15 @@ from link.frames.rotations import enu_from_ned, ned_from_enu
 from link.mavlink.dialect import Message, mavlink
 from link.messages import Vector3
 from sim_autopilot.core.data import Array, Reference
-from sim_autopilot.core.places import Origin, local_from_world, world_from_local
+from sim_autopilot.core.places import (
+    ABOVE_HOME,
+    ABOVE_SEA,
+    ABOVE_TERRAIN,
+    REACH_M,
+    Origin,
+    local_from_world,
+    world_from_local,
+)
 from sim_autopilot.plant.snapshot import Snapshot
 from sim_autopilot.setpoints.partial import Axes, read_mask
 
@@ -123,12 +131,7 @@ def _enu(x: float, y: float, z: float, body: bool, yaw_rad: float) -> Array:
     return np.array((c * x + s * y, s * x - c * y, -z))
 
 
-_ABOVE_SEA = frozenset({mavlink.MAV_FRAME_GLOBAL, mavlink.MAV_FRAME_GLOBAL_INT})
-_ABOVE_HOME = frozenset({mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT, mavlink.MAV_FRAME_GLOBAL_RELATIVE_ALT_INT})
-_ABOVE_TERRAIN = frozenset({mavlink.MAV_FRAME_GLOBAL_TERRAIN_ALT, mavlink.MAV_FRAME_GLOBAL_TERRAIN_ALT_INT})
-"""The ground is flat: as high as home."""
 _NO_POSITION = 0b111
-_REACH_M = 1e5
 
 
 def local_setpoint(
@@ -142,8 +145,8 @@ def local_setpoint(
         home_enu_m: in W, what relative altitudes are above.
         knows_terrain: whether altitudes above the ground are flown.
     """
-    above_ground = _ABOVE_HOME | _ABOVE_TERRAIN if knows_terrain else _ABOVE_HOME
-    if message.coordinate_frame not in _ABOVE_SEA | above_ground:
+    above_ground = ABOVE_HOME | ABOVE_TERRAIN if knows_terrain else ABOVE_HOME
+    if message.coordinate_frame not in ABOVE_SEA | above_ground:
         return None
     north = east = down = 0.0
     if message.type_mask & _NO_POSITION != _NO_POSITION:
@@ -152,7 +155,7 @@ def local_setpoint(
         if message.coordinate_frame in above_ground:
             altitude_m += geodetic_from_enu(origin.world, home_enu_m)[2]
         north, east, down = ned_from_enu(local_from_geodetic(origin.frame, latitude_rad, longitude_rad, altitude_m))
-        if hypot(north, east) > _REACH_M:
+        if hypot(north, east) > REACH_M:
             return None
     return mavlink.MAVLink_set_position_target_local_ned_message(
         message.time_boot_ms,

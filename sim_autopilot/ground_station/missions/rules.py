@@ -8,7 +8,8 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 
 from link.mavlink.dialect import mavlink
-from sim_autopilot.missions.items import ABOVE_TERRAIN, FENCE, MISSION, RALLY
+from sim_autopilot.core.places import ABOVE_TERRAIN
+from sim_autopilot.missions.items import FENCE, MISSION, RALLY
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
