@@ -29,6 +29,7 @@ class AutopilotView(Struct, frozen=True, kw_only=True):
     armed: bool
     in_control: bool  # it is in the mode in which it follows the companion's setpoints
     failsafe: bool  # in which it flies by itself
+    disarm_told: bool = False  # once, while it counts as armed
     warns: bool = False  # it reports a failsafe, and follows the setpoints on
     overruled: bool = False  # by a failsafe: another mode than was last asked for is flown
     restarted: bool = False  # and not in control since
@@ -39,7 +40,8 @@ class AutopilotView(Struct, frozen=True, kw_only=True):
     receiver: Receiver = Receiver()
     frame_moves: FrameMoves = NO_MOVES
     range_down: RangeReading | None = None
-    battery_share: float | None = None  # left, 0 to 1
+    battery_share: float | None = None  # left, 0 to 1: the larger of the last two that were told
+    battery_told: float | None = None  # the last
 
 
 NO_AUTOPILOT = AutopilotView(link_up=False, armed=False, in_control=False, failsafe=False)

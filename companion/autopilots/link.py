@@ -5,6 +5,7 @@ from itertools import chain
 
 from companion.autopilots.choice import driver_for
 from companion.autopilots.driver import AutopilotCommand, AutopilotView, Driver, streams_hz
+from companion.autopilots.heartbeat import with_acknowledgement
 from companion.autopilots.late_reports import LateReports
 from companion.autopilots.limits import LimitQuestions, parameter_names
 from companion.autopilots.pilot_switch import PilotSwitch
@@ -162,6 +163,8 @@ class AutopilotLink:
                     if event.result != mavlink.MAV_RESULT_IN_PROGRESS:
                         self._take_answer(event.command, event.ticket)
                     self._acknowledgements.append((event.command, event.result))
+                    view = with_acknowledgement(self.state.view, event.command, event.result)
+                    self.state = replace(self.state, view=view)
                 case CommandTimedOut():
                     self._take_answer(event.command, event.ticket)
                 case ParameterMissing():

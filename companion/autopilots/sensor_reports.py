@@ -21,7 +21,13 @@ def with_sensor(view: AutopilotView, message: Message, clock: ClockMap, own_at: 
     """Return the view after a DISTANCE_SENSOR, with the drone as `own_at` has it, or the first battery's status."""
     if message.get_type() == "DISTANCE_SENSOR":
         return replace(view, range_down=_range_reading(message, clock, own_at) or view.range_down)
-    return replace(view, battery_share=battery_share(message)) if is_of_first_battery(message) else view
+    return _with_battery(view, battery_share(message)) if is_of_first_battery(message) else view
+
+
+def _with_battery(view: AutopilotView, told: float | None) -> AutopilotView:
+    """Return the view after what is told of the battery; a single report that has less may be anybody's."""
+    share = told if told is None or view.battery_told is None else max(told, view.battery_told)
+    return replace(view, battery_share=share, battery_told=told)
 
 
 def is_of_first_battery(message: Message) -> bool:

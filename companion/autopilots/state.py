@@ -8,6 +8,7 @@ from msgspec import Struct, field
 
 from companion.autopilots.driver import NO_AUTOPILOT, AutopilotView, Driver
 from companion.autopilots.frame_moves import after_origin
+from companion.autopilots.heartbeat import with_heartbeat, with_landed_state, with_mode
 from companion.autopilots.own_reports import (
     HISTORY_NS,
     carry,
@@ -33,7 +34,6 @@ from link.program.text import printable
 from link.records import replace
 
 _AHEAD_NS = 100_000_000  # how far a report is carried beyond the newest one
-_FAILSAFE_STATES = (mavlink.MAV_STATE_CRITICAL, mavlink.MAV_STATE_EMERGENCY)
 
 
 class AutopilotState(Struct, frozen=True, kw_only=True):
@@ -49,6 +49,7 @@ class AutopilotState(Struct, frozen=True, kw_only=True):
         origin_doubted_msl: another one, told once; a single message may be anybody's.
         doubted_ns: of the drone's newest report then; with its origin it steps in the next.
         geoid_height_m: of mean sea level above the ellipsoid, None until the autopilot's receiver tells it.
+        geoid_doubted_m: another one, told once.
         parameters: those read, by name.
         texts: what it said and nobody has taken yet.
     """
@@ -62,6 +63,7 @@ class AutopilotState(Struct, frozen=True, kw_only=True):
     origin_doubted_msl: Datum | None = None
     doubted_ns: int = 0
     geoid_height_m: float | None = None
+    geoid_doubted_m: float | None = None
     parameters: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
     texts: tuple[str, ...] = ()
 
@@ -92,20 +94,17 @@ def update_state(state: AutopilotState, message: Message, clock: ClockMap, drive
         case "ATTITUDE_QUATERNION":
             state = _attitude(state, message)
         case "HEARTBEAT":
-            state = _heartbeat(state, message, driver)
+            state = replace(state, view=with_heartbeat(state.view, message, driver))
         case "CURRENT_MODE":
-            state = _current_mode(state, message, driver)
+            state = replace(state, view=with_mode(state.view, message, driver))
         case "EXTENDED_SYS_STATE":
-            taking_off = message.landed_state == mavlink.MAV_LANDED_STATE_TAKEOFF
-            view = replace(state.view, landed=_is_landed(message.landed_state), taking_off=taking_off)
-            state = replace(state, view=view)
+            state = replace(state, view=with_landed_state(state.view, message))
         case "GPS_GLOBAL_ORIGIN":
             state = _place_origin(_hear_origin(state, origin_above_sea(message)), driver.projection)
         case "GPS_RAW_INT":
-            height_m = geoid_height_m(state.geoid_height_m, message)
             is_fixed = message.fix_type == mavlink.GPS_FIX_TYPE_RTK_FIXED
             view = replace(state.view, receiver=replace(state.view.receiver, is_fixed=is_fixed))
-            state = _place_origin(replace(state, geoid_height_m=height_m, view=view), driver.projection)
+            state = _place_origin(_hear_geoid(replace(state, view=view), message), driver.projection)
         case "DISTANCE_SENSOR" | "BATTERY_STATUS":
             state = replace(state, view=with_sensor(state.view, message, clock, state.own_at))
         case "STATUSTEXT" | "EVENT":
@@ -181,40 +180,6 @@ def _attitude(state: AutopilotState, message: Message) -> AutopilotState:
     )
 
 
-def _heartbeat(state: AutopilotState, message: Message, driver: Driver) -> AutopilotState:
-    armed = bool(message.base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED)
-    in_control = driver.is_in_control(message.base_mode, message.custom_mode)
-    reports = message.system_status in _FAILSAFE_STATES
-    # Nothing follows setpoints in an emergency, whatever its mode.
-    warns = reports and message.system_status != mavlink.MAV_STATE_EMERGENCY
-    warns = warns and in_control and driver.follows_in_failsafe
-    view = replace(
-        state.view,
-        link_up=True,
-        armed=armed,
-        refusal=None if armed else state.view.refusal,
-        in_control=in_control,
-        failsafe=reports and not warns,
-        warns=warns,
-        restarted=state.view.restarted and not in_control,
-    )
-    return replace(state, view=view)
-
-
-def _current_mode(state: AutopilotState, message: Message, driver: Driver) -> AutopilotState:
-    """Take the mode; another one than was last asked for is a failsafe's, long before the heartbeat says so."""
-    custom = mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED
-    in_control = driver.is_in_control(custom, message.custom_mode)
-    overruled = not in_control and driver.is_in_control(custom, message.intended_custom_mode)
-    return replace(state, view=replace(state.view, in_control=in_control, overruled=overruled))
-
-
-def _is_landed(landed_state: int) -> bool | None:
-    if landed_state == mavlink.MAV_LANDED_STATE_UNDEFINED:
-        return None
-    return bool(landed_state == mavlink.MAV_LANDED_STATE_ON_GROUND)
-
-
 def has_frame_moved(before: AutopilotState, state: AutopilotState) -> bool:
     """Return whether the local frame has stepped, or what is known of its origin has changed."""
     has_stepped = state.view.frame_moves.shift_enu_m != before.view.frame_moves.shift_enu_m
@@ -232,6 +197,17 @@ def _hear_origin(state: AutopilotState, told: Datum | None) -> AutopilotState:
     if known is None or (is_told_again and (newest_ns != state.doubted_ns or not newest_ns)):
         return replace(state, origin_msl=told, origin_doubted_msl=None)
     return state if is_told_again else replace(state, origin_doubted_msl=told, doubted_ns=newest_ns)
+
+
+def _hear_geoid(state: AutopilotState, message: Message) -> AutopilotState:
+    """Take the geoid's first height, and another one that is told twice in a row: with it the local frame moves."""
+    known_m, doubted_m = state.geoid_height_m, state.geoid_doubted_m
+    told_m = geoid_height_m(known_m, message)
+    if told_m is None or known_m is None or told_m == known_m:
+        return replace(state, geoid_height_m=told_m, geoid_doubted_m=None)
+    if doubted_m is None or geoid_height_m(doubted_m, message) != doubted_m:
+        return replace(state, geoid_doubted_m=told_m)
+    return replace(state, geoid_height_m=told_m, geoid_doubted_m=None)
 
 
 def _place_origin(state: AutopilotState, projection: Projection) -> AutopilotState:

@@ -93,6 +93,7 @@ class Reason(Enum):
     DESCENT_TOO_LONG = "descend took longer than {:g} s"
     ABOVE_AFTER_CONTACT = "{:.1f} m above the pad after contact"
     BELOW_AFTER_CONTACT = "below the pad after contact"
+    LEFT_AFTER_CONTACT = "left behind by the pad after contact, in the air"
 
     # Where on the vehicle the pad is, is not known.
     PAD_NOT_DESCRIBED = "the vehicle has not described its pad"

@@ -146,12 +146,21 @@ class RestartWatch:
         """Whether the boot time seen last is so far behind that further ones have to confirm a restart."""
         return self._earlier_in_a_row > 0
 
+    def _is_late(self, boot_ns: int, t_ns: int) -> bool:
+        """Whether a boot time is more than has passed since the autopilot was last heard: no restart can be so old."""
+        if self._heard_ns is None or t_ns - self._heard_ns > LOST_AFTER_NS:
+            return False
+        return boot_ns > t_ns - self._heard_ns + _JUMP_NS
+
     def see(self, boot_ns: int, t_ns: int) -> AutopilotRestarted | None:
         """Takes note of a boot time of the autopilot; returns the restart that it proves, if it does."""
         if boot_ns >= self._newest_ns - _JUMP_NS:
             if boot_ns >= self._newest_ns:
                 self._newest_ns, self._heard_ns = boot_ns, t_ns
             self._earlier_in_a_row = 0
+            return None
+        if self._is_late(boot_ns, t_ns):
+            self._earlier_in_a_row = 1
             return None
         self._earlier_in_a_row += 1
         if self._earlier_in_a_row < _JUMP_CONFIRMATIONS:

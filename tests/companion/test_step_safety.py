@@ -4,6 +4,7 @@ import math
 
 import pytest
 
+from companion.core.data import RangeReading
 from companion.core.reasons import Reason
 from companion.situation.phases import Phase
 from companion.step import companion_step
@@ -235,10 +236,41 @@ def test_hold_time_of_an_abort_goes_on_through_the_phases_of_an_approach() -> No
 def test_drone_that_the_pad_has_left_after_contact_is_pressed_down_where_it_is() -> None:
     flight = reached(Phase.TOUCHDOWN)
     x_m, y_m, z_m = flight.own.position_enu_m
-    held = replace(flight.own, position_enu_m=(x_m - 3.0, y_m + 1.0, z_m), velocity_enu_m_s=(0.0, 0.0, 0.0))
+    held = replace(flight.own, position_enu_m=(x_m - 2.0, y_m + 1.0, z_m), velocity_enu_m_s=(0.0, 0.0, 0.0))
     _, outputs = companion_step(flight.memory, replace(flight.inputs(), own=held), flight.system)
     assert outputs.setpoint is not None
     assert outputs.setpoint.velocity_enu_m_s is not None
     assert math.dist(outputs.setpoint.position_enu_m[:2], held.position_enu_m[:2]) < 0.1
     assert outputs.setpoint.position_enu_m[2] < z_m
     assert outputs.setpoint.velocity_enu_m_s[2] < -0.275  # what PX4's land detector asks for at least
+
+
+@pytest.mark.parametrize(
+    ("behind_m", "seen_m", "landed", "flies"),
+    [
+        (5.0, None, False, True),
+        (2.0, None, False, False),  # on another part of the vehicle, for all that is known
+        (2.0, 1.6, False, True),
+        (5.0, 0.05, False, False),  # it stands on something, the road or a bonnet
+        (5.0, None, True, False),
+    ],
+)
+def test_drone_that_hovers_where_the_pad_was_is_not_pressed_down_but_climbs(
+    behind_m: float, seen_m: float | None, landed: bool, flies: bool
+) -> None:
+    """As after a setpoint link that was silent from the last decimetres on: the autopilot held the drone."""
+    flight = reached(Phase.TOUCHDOWN)
+    x_m, y_m, z_m = flight.own.position_enu_m
+    flight.own = replace(flight.own, position_enu_m=(x_m - behind_m, y_m, z_m), velocity_enu_m_s=(0.0, 0.0, 0.0))
+    sensor_m = CONFIG.touchdown.range_finder.height_m
+    seen = None if seen_m is None else RangeReading(t_ns=flight.t_ns, distance_m=seen_m + sensor_m, own=flight.own)
+    flight.view = replace(flight.view, landed=landed, range_down=seen)
+    outputs = flight.step()
+    assert (flight.reason is Reason.LEFT_AFTER_CONTACT) is flies
+    assert (flight.phase is Phase.ABORT) is flies
+    assert outputs.setpoint is not None
+    if flies:
+        flight.run(1.0)
+        assert flight.own.position_enu_m[2] > z_m
+    else:
+        assert outputs.setpoint.position_enu_m[2] < z_m

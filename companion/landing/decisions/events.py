@@ -33,8 +33,10 @@ from companion.landing.decisions.waiting import waited_s
 from companion.landing.state.memory import ControlMemory, Held, Progress
 from companion.situation.phases import FLYING_PHASES, LANDING_PHASES, Event, Phase
 from companion.situation.situation import Situation
+from companion.vehicle.pad_reach import over_pad_radius_m
 
 _COMMITTED = (*MISSED, CONTACT_RISKY)
+_STDS = 2.0  # by which the pad may be elsewhere
 
 
 def decide(progress: Progress, control: ControlMemory, s: Situation, config: CompanionConfig) -> Decision | None:
@@ -197,7 +199,25 @@ def _on_the_pad(s: Situation, held: Held, config: CompanionConfig) -> Decision |
         return Event.CONTACT_LOST, Cause(Reason.ABOVE_AFTER_CONTACT, (relative.height_m,))
     if is_below_pad(s, config):
         return Event.CONTACT_LOST, Cause(Reason.BELOW_AFTER_CONTACT)
+    if _is_left_in_the_air(s, config):
+        return Event.CONTACT_LOST, Cause(Reason.LEFT_AFTER_CONTACT)
     return None
+
+
+def _is_left_in_the_air(s: Situation, config: CompanionConfig) -> bool:
+    """Return whether the pad has gone from under the drone and nothing else holds it up: it flies.
+
+    That is so where its range finder sees nothing at its feet; without one, where no part of the vehicle is.
+    """
+    a, seen_m = s.approach, s.below.range_height_m
+    if a is None or s.pad is None or s.autopilot.landed is True or is_fix_old(s, config):
+        return False
+    surely_m = a.distance_m - _STDS * float(max(s.pad.position_std_m[0, :2].tolist()))
+    if surely_m <= 2.0 * over_pad_radius_m(a.pad_half_width_m, config):
+        return False
+    if seen_m is not None:
+        return seen_m > config.touchdown.range_finder.contact_height_max_m
+    return surely_m > config.sortie.vehicle_radius_m
 
 
 def _end_climb(progress: Progress, s: Situation, config: CompanionConfig) -> Decision | None:

@@ -213,13 +213,16 @@ def test_first_geoid_height_is_taken_whatever_it_is(geoid_mm: int) -> None:
     assert state.view.frame.origin.altitude_m == pytest.approx(400.0 + geoid_mm * 1e-3, abs=0.05)
 
 
-def test_later_geoid_height_counts_when_it_is_another_one() -> None:
+def test_later_geoid_height_counts_when_it_is_told_again() -> None:
     state = _hear(_origin(475_000_000, 80_000_000, 400_000), _receiver(3, 410_000, 410_600))
     near = _hear(_receiver(3, 410_000, 411_500), state=state)
     assert near.view == state.view
-    other = _hear(_receiver(3, 410_000, 411_700), state=state)
-    assert other.view.frame is not None
-    assert other.view.frame.origin.altitude_m == pytest.approx(401.7)
+    once = _hear(_receiver(3, 410_000, 411_700), state=state)
+    assert once.view == state.view
+    assert _hear(_receiver(3, 410_000, 410_600), _receiver(3, 410_000, 411_700), state=once).view == state.view
+    twice = _hear(_receiver(3, 410_000, 411_700), state=once)
+    assert twice.view.frame is not None
+    assert twice.view.frame.origin.altitude_m == pytest.approx(401.7)
 
 
 @pytest.mark.parametrize(("fix", "is_fixed"), [(3, False), (5, False), (6, True)])
