@@ -22,6 +22,7 @@ from companion.core.reasons import Cause, Reason
 from companion.situation.situation import Situation
 from companion.vehicle.estimator import BufferHealth
 from companion.vehicle.pad import PadPath
+from companion.vehicle.pad_reach import cone_radius_at_pad_m
 from link.records import replace
 
 _EVERY_NS = 500_000_000
@@ -110,6 +111,7 @@ class CourseWatch(Struct, frozen=True, kw_only=True):
         compared_s: for how long without a stop they have been compared.
         compared_ns: when they were compared last, monotonic; None before the first time.
         has_agreed: they agreed once.
+        has_stopped: it was slow since then: without a stop none that drives forwards begins to go backwards.
         off_rad: by how much the heading was off when it was found to contradict the course; None while it does not.
     """
 
@@ -118,6 +120,7 @@ class CourseWatch(Struct, frozen=True, kw_only=True):
     compared_s: float = 0.0
     compared_ns: int | None = None
     has_agreed: bool = False
+    has_stopped: bool = False
     off_rad: float | None = None
 
 
@@ -138,7 +141,8 @@ def update_course(
     (vx, vy), (ax, ay) = pad.velocity_enu_m_s[0, :2].tolist(), pad.acceleration_enu_m_s2[0, :2].tolist()
     speed_m_s = math.hypot(vx, vy)
     if speed_m_s < config.integrity.course_speed_min_m_s:
-        return watch if watch.compared_ns is None else replace(watch, compared_s=0.0, compared_ns=None)
+        stopped = replace(watch, compared_s=0.0, compared_ns=None, has_stopped=True)
+        return watch if watch.compared_ns is None else stopped
     if speed_std_m_s > _COURSE_STD_MAX * speed_m_s:
         return watch
     step_s = 0.0 if watch.compared_ns is None else min((monotonic_ns - watch.compared_ns) * 1e-9, STEP_MAX_S)
@@ -152,29 +156,37 @@ def update_course(
         compared_s=compared_s,
         compared_ns=monotonic_ns,
     )
-    slip_rad = _CAR_M * abs(vx * ay - vy * ax) / speed_m_s**3
+    slip_rad = max(_CAR_M, pad.mounting.arm_m) * abs(vx * ay - vy * ax) / speed_m_s**3
     unsure_rad = _COURSE_STDS * speed_std_m_s / speed_m_s
-    return (
-        watch
-        if compared_s < _COURSE_OVER_S
-        else _judge(watch, config.integrity.heading_off_max_rad + slip_rad + unsure_rad)
-    )
+    return watch if compared_s < _COURSE_OVER_S else _judge(watch, _off_max_rad(pad, config) + slip_rad + unsure_rad)
+
+
+def _off_max_rad(pad: PadPath, config: CompanionConfig) -> float:
+    """Return by how much the heading may be off the course.
+
+    At the end of a long arm a pad that has not been seen is off by S2's limit before a car's heading is. A vessel is
+    set by wind and current: its course says less.
+    """
+    most_rad, mounting = config.integrity.heading_off_max_rad, pad.mounting
+    if mounting.is_afloat or mounting.arm_m == 0.0 or pad.frame_offset.is_confirmed:
+        return most_rad
+    return min(most_rad, cone_radius_at_pad_m(pad.half_width_m, config) / mounting.arm_m)
 
 
 def _judge(watch: CourseWatch, off_max_rad: float) -> CourseWatch:
     off_rad = abs(math.atan2(watch.off_sin, watch.off_cos))
     within_rad = off_max_rad if watch.off_rad is None else _BACK_WITHIN * off_max_rad
     if off_rad <= within_rad:
-        is_known = watch.has_agreed and watch.off_rad is None
-        return watch if is_known else replace(watch, has_agreed=True, off_rad=None)
-    if watch.has_agreed and math.pi - off_rad <= within_rad:
+        is_known = watch.has_agreed and not watch.has_stopped and watch.off_rad is None
+        return watch if is_known else replace(watch, has_agreed=True, has_stopped=False, off_rad=None)
+    if watch.has_agreed and watch.has_stopped and math.pi - off_rad <= within_rad:
         return watch if watch.off_rad is None else replace(watch, off_rad=None)
     return watch if watch.off_rad is not None else replace(watch, off_rad=off_rad)
 
 
 def without_contradicted_heading(pad: PadPath, watch: CourseWatch) -> PadPath:
     """Return the pad, not placed where that takes a heading that the course contradicts."""
-    if watch.off_rad is None or not pad.mounting.needs_heading or pad.unplaced is not None:
+    if watch.off_rad is None or pad.mounting.arm_m == 0.0 or pad.unplaced is not None:
         return pad
     return replace(pad, unplaced=Cause(Reason.HEADING_OFF_COURSE, (math.degrees(watch.off_rad),)))
 

@@ -118,7 +118,8 @@ class ImmModel:
         tells_motion = measurement.quantity in MOTIONS
         tells_driving = tells_motion or measurement.quantity is self.placed_by
         modes = self._after_silence(state) if tells_motion and state.unmeasured_s > 0.0 else state.modes
-        modes, nis, gate_nis = judgement.take_reading(modes, reading, self.numbers.lever_m, self.numbers.course)
+        course = self.numbers.courses[state.turn_age_s < TURN_AGE_MAX_S]
+        modes, nis, gate_nis = judgement.take_reading(modes, reading, self.numbers.lever_m, course)
         tells_turn = measurement.quantity in TURNS and self.placed_by is Quantity.POSITION
         deck = state.deck
         if deck is not None and measurement.quantity is Quantity.TILT:

@@ -9,8 +9,9 @@ import numpy as np
 
 from companion.core.data import Array
 from companion.vehicle.compiled import compiled_kernel
+from companion.vehicle.imm_kernels import HEADING as HEADING_STATE
 from companion.vehicle.imm_mixing import Modes, combine, is_heading_known, switching
-from companion.vehicle.imm_noise import process_noise
+from companion.vehicle.imm_noise import UNKNOWN_HEADING_VARIANCE, process_noise
 from companion.vehicle.imm_sensors import COURSE, HEADING, PAD, POSITION, VELOCITY, observe
 from companion.vehicle.small_matrices import carried_through, correct, inverse_of
 
@@ -101,14 +102,20 @@ def update_modes(
 
 
 @compiled_kernel
-def align_modes(
-    means: Array, covariances: Array, speed_min_m_s: float, course_variance: float, known_variance: float
-) -> tuple[Array, Array]:
+def align_modes(means: Array, covariances: Array, course: Array) -> tuple[Array, Array]:
     """Return the modes after the rule that a driving vehicle heads where it goes.
 
-    One that is known to head against its course drives backwards. Nothing is learnt while it is slow, while the course
-    itself is vague, or when it goes sideways.
+    One that is known to head against its course drives backwards. Nothing is learnt while it is slow, or while the
+    course itself is vague. Where sensors tell that it turns, one that goes sideways is believed to skid or to drift;
+    else its heading was learnt from its course alone, and was wrong: no vehicle that drives on begins to go backwards.
+
+    Args:
+        means: (n, 25) of the modes.
+        covariances: (n, 25, 25) likewise.
+        course: (4,) speed from which on a course is one, m/s, variances of the heading about it and of a heading that
+            is known, rad^2, and 1 where sensors tell the heading or how it turns.
     """
+    speed_min_m_s, course_variance, known_variance, told = course
     xs, Ps = means.copy(), covariances.copy()
     lever, zero = np.zeros(4), np.zeros(1)
     for j in range(len(means)):
@@ -116,12 +123,15 @@ def align_modes(
         speed = math.hypot(x[2], x[3])
         if speed < speed_min_m_s or P[2, 2] + P[3, 3] > (0.3 * speed) ** 2:
             continue
-        known = P[7, 7] < known_variance
+        known = P[HEADING_STATE, HEADING_STATE] < known_variance
         expected, H = observe(COURSE, x, lever, False)
         residual = residual_of(COURSE, zero, expected)
         if known and abs(residual[0]) > math.pi - SIDEWAYS_RAD:
             residual[0] -= math.copysign(math.pi, residual[0])
         if known and abs(residual[0]) > SIDEWAYS_RAD:
+            if told == 0.0:
+                Ps[j, HEADING_STATE, :] = Ps[j, :, HEADING_STATE] = 0.0
+                Ps[j, HEADING_STATE, HEADING_STATE] = UNKNOWN_HEADING_VARIANCE
             continue
         R = np.array([[course_variance if known else min(course_variance, 0.01)]])
         xs[j], Ps[j], _, _ = correct(x, P, residual, H, R)
@@ -138,7 +148,7 @@ def take_reading(
         modes: the filter.
         reading: kind as `observe` takes it, value (m,), covariance (m, m).
         lever: (4,) from the antenna to the pad in V, and the pad's height above the axis of roll, m.
-        course: (3,) `align_modes`' speed, m/s, and variances of course and known heading, rad^2.
+        course: (4,) as `align_modes` takes it.
     """
     kind, value, R = reading
     known = is_heading_known(modes, course[2])
@@ -149,5 +159,5 @@ def take_reading(
         R[1, 1] += arm2
     (means, covariances, weights), nis, gate_nis = update_modes(modes, (kind, value, R), lever, known)
     if kind in (POSITION, VELOCITY):
-        means, covariances = align_modes(means, covariances, course[0], course[1], course[2])
+        means, covariances = align_modes(means, covariances, course)
     return (means, covariances, weights), nis, gate_nis

@@ -27,10 +27,10 @@ from companion.vehicle.imm_noise import (
     OWN_NOISE,
     OWN_RATE_NOISE,
     RECEIVER_NOISE,
+    UNKNOWN_HEADING_VARIANCE,
 )
 from link.messages import PadGeometry, Vector3
 
-UNKNOWN_HEADING_VARIANCE = math.pi**2 / 3.0  # of an angle that may be anything
 STEADY, EASING, BRAKING, TURNING, RAMP = range(5)
 """The models in their order."""
 Bounds = tuple[float, float]
@@ -78,7 +78,7 @@ class Numbers:
             ordinary one's, and at most.
         lever_m: (4,) from the antenna to the pad in V, and the pad's height above the axis of roll.
         prior_variances: (25,) of every state but position, offset and clock, when nothing else is known.
-        course: (3,) as `imm_judgement.take_reading` takes it.
+        courses: (4,) as `imm_judgement.align_modes` takes it, while no sensor tells the heading, and while one does.
     """
 
     motion: Array
@@ -88,7 +88,7 @@ class Numbers:
     steady_m2_s5: tuple[Bounds, Bounds]
     lever_m: Array
     prior_variances: Array
-    course: Array
+    courses: tuple[Array, Array]
 
 
 def swing_of(config: ImmConfig, *, is_afloat: bool) -> SwingConfig:
@@ -103,6 +103,7 @@ def numbers_of(config: ImmConfig, deck: Deck) -> Numbers:
     level = (2.0 * math.pi * swing.tilt.frequency_hz, swing.tilt.damping, 0.0)  # until it is told
     lever_m = (*deck.antenna_to_pad_m, deck.pad_height_m)
     modes, heading = _modes(config), config.heading
+    course = (heading.course_speed_min_m_s, heading.course_std_rad**2, heading.known_std_rad**2)
     return Numbers(
         motion=np.array(
             [
@@ -128,7 +129,7 @@ def numbers_of(config: ImmConfig, deck: Deck) -> Numbers:
         ),
         lever_m=np.array(lever_m),
         prior_variances=_prior_variances(config, is_afloat=deck.is_afloat),
-        course=np.array([heading.course_speed_min_m_s, heading.course_std_rad**2, heading.known_std_rad**2]),
+        courses=(np.array([*course, 0.0]), np.array([*course, 1.0])),
     )
 
 

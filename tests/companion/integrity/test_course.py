@@ -26,9 +26,7 @@ def driving(off_rad: float, speed_m_s: float = 5.0, lateral_m_s2: float = 0.0) -
     along = np.array([math.cos(COURSE_RAD), math.sin(COURSE_RAD), 0.0])
     pad = pad_at(tuple((speed_m_s * along).tolist()))
     across = np.tile(lateral_m_s2 * np.array([-along[1], along[0], 0.0]), (len(pad.offset_s), 1))
-    return replace(
-        pad, yaw_rad=COURSE_RAD + off_rad, acceleration_enu_m_s2=across, mounting=PadMounting(needs_heading=True)
-    )
+    return replace(pad, yaw_rad=COURSE_RAD + off_rad, acceleration_enu_m_s2=across, mounting=PadMounting(arm_m=1.3))
 
 
 def course_after(
@@ -176,11 +174,35 @@ def test_vehicle_that_hardly_moves_has_no_course(speed_m_s: float, *, expected: 
 @pytest.mark.parametrize(("turned_rad", "side"), [(0.0, 1.0), (math.pi, -1.0)], ids=["forwards", "backwards"])
 def test_heading_that_was_off_is_believed_again_well_within_the_limit(turned_rad: float, side: float) -> None:
     agreed = course_after(CourseWatch(), driving(0.0))
-    off = course_after(agreed, driving(1.2))
+    off = course_after(course_after(agreed, driving(1.2)), driving(1.2, speed_m_s=0.5), 1.0)
     assert off.off_rad is not None
     for share, is_still_off in ((0.72, True), (0.68, False)):
         watch = course_after(off, driving(turned_rad + side * share * LIMIT_RAD), 20.0)
         assert (watch.off_rad is not None) is is_still_off
+
+
+def test_vehicle_that_drives_on_does_not_begin_to_reverse_without_a_stop() -> None:
+    agreed = course_after(CourseWatch(), driving(0.0))
+    assert course_after(agreed, driving(math.pi)).off_rad is not None
+    stood = course_after(agreed, driving(0.0, speed_m_s=0.5), 1.0)
+    reverses = course_after(stood, driving(math.pi))
+    assert reverses.off_rad is None
+    forwards = course_after(course_after(reverses, driving(0.0, speed_m_s=0.5), 1.0), driving(0.0))
+    assert course_after(forwards, driving(math.pi)).off_rad is not None
+
+
+@pytest.mark.parametrize(
+    ("arm_m", "is_afloat", "is_seen", "expected"),
+    [(1.3, False, False, False), (6.0, False, False, True), (6.0, True, False, False), (6.0, False, True, False)],
+)
+def test_heading_is_judged_by_what_it_is_off_at_the_end_of_the_arm(
+    arm_m: float, *, is_afloat: bool, is_seen: bool, expected: bool
+) -> None:
+    """Of 7 degrees: 0.73 m at the end of 6 m; a pad that has been seen is where it was seen."""
+    pad = driving(math.radians(7.0))
+    mounting = PadMounting(arm_m=arm_m, is_afloat=is_afloat)
+    placed = replace(pad, mounting=mounting, frame_offset=replace(pad.frame_offset, is_confirmed=is_seen))
+    assert (course_after(CourseWatch(), placed).off_rad is not None) is expected
 
 
 def test_vehicle_that_was_never_seen_to_go_forwards_does_not_reverse_by_right() -> None:

@@ -16,7 +16,7 @@ BEGINS_AFTER_S = np.array([0.4, 10.0, 40.0, 25.0])
 NOISES = np.stack([NOISE, 3.0 * NOISE, 30.0 * NOISE, 0.2 * NOISE])
 OFFSET_S = np.array([0.0, 0.2, 0.4, 0.6, 0.7, 1.1])
 KNOWN, UNKNOWN = 1e3, 1e-3  # variances of the heading, above and below all of `modes_of`
-COURSE = np.array([1.5, 0.05, KNOWN])
+COURSE = np.array([1.5, 0.05, KNOWN, 1.0])
 COMPONENTS = {
     imm_sensors.POSITION: 3,
     imm_sensors.VELOCITY: 3,
@@ -46,7 +46,8 @@ def calls(seed: int) -> list[Call]:
         ("imm_mixing", "mix", (modes, 0.83, np.array([0.1, 0.04, 0.01, 0.02]))),
         ("imm_mixing", "steps_of", (0.33, MOTION)),
         ("imm_judgement", "expect_manoeuvres", (modes, 0.37, BEGINS_AFTER_S, NOISES)),
-        ("imm_judgement", "align_modes", (*modes[:2], *COURSE)),
+        ("imm_judgement", "align_modes", (*modes[:2], COURSE)),
+        ("imm_judgement", "align_modes", (*modes[:2], COURSE * np.array([1.0, 1.0, 1.0, 0.0]))),
     ]
     for known in (KNOWN, UNKNOWN):
         found += [
