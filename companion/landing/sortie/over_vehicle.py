@@ -74,8 +74,8 @@ def over_vehicle(way: Array, frame: StationFrame, ahead: float, pad: PadPath, fe
     position[:, 2] += way[:, 2] + feet_offset_m
     velocity[:, :2] += turned_moved + rates[:, None] * across
     velocity[:, 2] += moved[:, 2]
-    # Towards the pad's centre, and of moving in what turns (Coriolis). What a turn adds that begins or ends is left out:
-    # a forecast's rate of turn is too rough for its derivative, which an arm of 7 m would multiply.
+    # Towards the pad's centre, and of moving in what turns (Coriolis). What a turn adds that begins or ends is left
+    # out, for a forecast's rate of turn is too rough for its derivative, which an arm of 7 m would multiply.
     acceleration[:, :2] -= (rates**2)[:, None] * arm
     acceleration[:, :2] += 2.0 * rates[:, None] * np.column_stack((-turned_moved[:, 1], turned_moved[:, 0]))
     return Target(
