@@ -52,12 +52,24 @@ _DESCENT = (Named("WPNAV_SPEED_DN", _CENTI), Named("WP_SPD_DN"))
 # that is late stays late, and a drone was seen to swing by 1.5 m about a pad at 5 m/s. Of 0.6, 0.8 and 1 this one did
 # not swing, and took less time than 0.6.
 _JERK_SHARE = 0.8
-_JERK = (Named("PSC_JERK_XY"), Named("PSC_JERK_NE"))  # it follows no acceleration that changes faster
+# The ends of their stated ranges, so that no parameter, nor one that somebody else tells, makes a path without an end.
+# PSC_JERK_Z is stated from 5 on, and is landed with at less.
+_JERK_LEAST_M_S3, _ACCELERATION_LEAST_M_S2 = 1.0, 0.5
+_JERK = (
+    Named("PSC_JERK_XY", least=_JERK_LEAST_M_S3),
+    Named("PSC_JERK_NE", least=_JERK_LEAST_M_S3),
+)  # it follows no acceleration that changes faster
 # It bounds that jerk by what its attitude controller can do, too (AC_PosControl::set_max_speed_accel_xy).
-_ACCELERATION = (Named("WPNAV_ACCEL", _CENTI), Named("WP_ACC"))
+_ACCELERATION = (
+    Named("WPNAV_ACCEL", _CENTI, _ACCELERATION_LEAST_M_S2),
+    Named("WP_ACC", least=_ACCELERATION_LEAST_M_S2),
+)
 _ATTITUDE_RAD_S2 = math.radians(1100.0)  # ATC_ACCEL_P_MAX by default
-_VERTICAL_ACCELERATION = (Named("WPNAV_ACCEL_Z", _CENTI), Named("WP_ACC_Z"))
-_VERTICAL_JERK = (Named("PSC_JERK_Z"), Named("PSC_JERK_D"))
+_VERTICAL_ACCELERATION = (
+    Named("WPNAV_ACCEL_Z", _CENTI, _ACCELERATION_LEAST_M_S2),
+    Named("WP_ACC_Z", least=_ACCELERATION_LEAST_M_S2),
+)
+_VERTICAL_JERK = tuple(Named(name, least=_JERK_LEAST_M_S3) for name in ("PSC_JERK_Z", "PSC_JERK_D"))
 _LIMITS = (
     _TILT,
     _TILT_BY_POSITION,

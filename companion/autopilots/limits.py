@@ -21,10 +21,11 @@ _TILT_SHARE = 0.85  # of the largest tilt's thrust; the rest is for gusts and fo
 
 @dataclass(frozen=True, slots=True)
 class Named:
-    """One name of a parameter, and what one of its units is in m/s or degrees."""
+    """One name of a parameter, what one of its units is in m/s or degrees, and what it counts as at least."""
 
     name: str
     unit: float = 1.0
+    least: float = 0.0
 
 
 def find_limit(parameters: Mapping[str, float], names: Sequence[Named]) -> float:
@@ -32,7 +33,7 @@ def find_limit(parameters: Mapping[str, float], names: Sequence[Named]) -> float
     for named in names:
         value = parameters.get(named.name, math.nan) * named.unit
         if value >= _STATED_MIN:
-            return value
+            return max(value, named.least)
     return math.inf
 
 

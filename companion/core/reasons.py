@@ -26,6 +26,7 @@ class Reason(Enum):
     DISPUTED_CONTACT = "contact against the range finder: {}"
     HARD_CONTACT = "hard contact: {}"
     HELD_UP = "held up"
+    MOTORS_RUN = "motors still run {:.0f} s after the contact: stay away, use the kill switch"
     MOTORS_OFF = "motors are off on the pad"
     HEARD = "heard"
     HEARD_AGAIN = "heard again: what was broken off goes on"
@@ -118,6 +119,7 @@ class Reason(Enum):
     # A landing on this vehicle cannot be done.
     DRONE_TAKEN = "another companion is there for this drone, and was there first: end one of them"
     VEHICLE_TAKEN = "{} lands on this vehicle, or stands on it: wait until it has gone"
+    STAMPS_LATE = "vehicle's fixes come {:.1f} s after their stamps: set its clock by GNSS or NTP, or use a faster link"
     STAMPS_AHEAD = "vehicle's fixes come {:.2f} s before their stamps: set its clock by GNSS or NTP, or the autopilot's"
     VEHICLE_TOO_FAST = "vehicle at {:.1f} m/s needs {:.1f} m/s, the limit is {:.1f}: raise {} or drive slower"
     VEHICLE_TOO_FAR = (

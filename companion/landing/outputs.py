@@ -74,6 +74,7 @@ def _press_m_s2(memory: StepMemory, situation: Situation, config: CompanionConfi
 
 _WAITING_FOR_PAD = frozenset({Phase.WAITING, Phase.CHASE, Phase.ALIGN})
 _NOT_BEGUN = frozenset({Phase.IDLE, Phase.WAITING, Phase.RETURN})
+_STOPPED_WITHIN_S = 5.0  # motors: PX4's land detector takes up to 3 s, and each order to disarm is given again
 _TIMED_PHASES = frozenset({Phase.ALIGN, Phase.DESCEND})
 _CONTACT_OFFSETS_S: Array = np.arange(0.0, 30.0, 0.1)  # from 8 m, the greatest height of a chase, it takes 8 s
 
@@ -119,6 +120,9 @@ def _cause(memory: StepMemory, situation: Situation, config: CompanionConfig) ->
         return not_placed
     if progress.phase in _NOT_BEGUN and progress.obstacle is not None:
         return progress.obstacle
+    in_phase_s = (situation.monotonic_ns - progress.since_ns) * 1e-9
+    if progress.phase is Phase.TOUCHDOWN and in_phase_s > _STOPPED_WITHIN_S:
+        return Cause(Reason.MOTORS_RUN, (in_phase_s,))
     return memory.sortie.warning or why_held_up(memory, situation, config) or progress.cause
 
 

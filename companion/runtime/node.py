@@ -27,6 +27,8 @@ from link.records import replace
 from link.zenoh.keys import Keys, Publication
 
 _MOTION_RATE_MIN_HZ = 50.0
+# A drone that sinks, or lifts off, cannot keep to a smaller jerk from one instant to the next.
+_KEEPS_LIMITS = frozenset({Phase.DESCEND, Phase.TOUCHDOWN, Phase.LIFT_OFF})
 _LINK_DELAY_MAX_S = 0.3  # a longer way is not led for: the model is too uncertain so far ahead
 
 
@@ -194,10 +196,11 @@ class CompanionNode:
         self._clock.advance(way.local_to_utc_ns(local_ns), local_ns, None if state.own is None else state.own.t_ns)
         switched = self.autopilot.pilot_switch.take()
         command, station = self._commands.next(switched, lambda: self._start_refusal(switched), local_ns)
+        kept = self.inputs if self.phase in _KEEPS_LIMITS else None
         inputs = StepInputs(
             t_ns=self._clock.t_ns,
             monotonic_ns=self._clock.monotonic_ns,
-            limits=self.autopilot.limits(self._limits_wanted),
+            limits=self.autopilot.limits(self._limits_wanted) if kept is None else kept.limits,
             response=None if cascade is None else response_to(cascade),
             own=state.own,
             autopilot=state.view,
@@ -208,7 +211,7 @@ class CompanionNode:
             command=command,
             station=station,
             leaving=self._leaving,
-            shaping=self.autopilot.shaping,
+            shaping=self.autopilot.shaping if kept is None else kept.shaping,
             link_delay=LinkDelay(mean_s=min(way.one_way_s, _LINK_DELAY_MAX_S), std_s=way.one_way_std_s),
         )
         self.inputs = inputs

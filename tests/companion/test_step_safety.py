@@ -8,6 +8,7 @@ from companion.core.data import RangeReading
 from companion.core.reasons import Reason
 from companion.situation.phases import Phase
 from companion.step import companion_step
+from link.mavlink.dialect import mavlink
 from link.messages import Command
 from link.records import replace
 from tests.companion.world import (
@@ -274,3 +275,15 @@ def test_drone_that_hovers_where_the_pad_was_is_not_pressed_down_but_climbs(
         assert flight.own.position_enu_m[2] > z_m
     else:
         assert outputs.setpoint.position_enu_m[2] < z_m
+
+
+def test_motors_that_do_not_stop_on_the_pad_are_told() -> None:
+    flight = reached(Phase.TOUCHDOWN)
+    flight.refuses = frozenset({mavlink.MAV_CMD_COMPONENT_ARM_DISARM})
+    first = flight.step()
+    assert first.status.reason_code != "MOTORS_RUN"
+    flight.run(6.0)
+    assert flight.phase is Phase.TOUCHDOWN
+    assert flight.view.armed
+    assert flight.outputs is not None
+    assert flight.outputs.status.reason_code == "MOTORS_RUN"

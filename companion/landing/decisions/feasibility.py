@@ -111,6 +111,15 @@ def _tell_stamped_ahead(s: Situation, _: CompanionConfig) -> Cause:
     return Cause(Reason.STAMPS_AHEAD, (-(s.vehicle.fix_age_on_arrival_s or 0.0),))
 
 
+def _are_stamps_late(s: Situation, c: CompanionConfig) -> bool:
+    age_s = s.vehicle.fix_age_on_arrival_s
+    return age_s is not None and age_s > c.abort.fix_age_max_s
+
+
+def _tell_stamped_late(s: Situation, _: CompanionConfig) -> Cause:
+    return Cause(Reason.STAMPS_LATE, (s.vehicle.fix_age_on_arrival_s or 0.0,))
+
+
 def _is_warned(s: Situation, _: CompanionConfig) -> bool:
     return s.autopilot.warns
 
@@ -159,6 +168,13 @@ OBSTACLES = (
         is_true=is_stamped_ahead,
         hold_s=lambda _, c: c.integrity.fix_ahead_hold_s,
         cause=_tell_stamped_ahead,
+    ),
+    Condition(
+        reason=Reason.STAMPS_LATE,
+        phases=_BEFORE_A_CHASE,
+        is_true=_are_stamps_late,
+        hold_s=lambda _, c: c.chase.driving_hold_s,
+        cause=_tell_stamped_late,
     ),
     Condition(
         reason=Reason.VEHICLE_TOO_FAST,

@@ -167,6 +167,16 @@ def test_jerk_is_no_more_than_the_attitude_controller_allows(acceleration_m_s2: 
     assert set_so == pytest.approx(unlimited, rel=0.01)
 
 
+@pytest.mark.parametrize("told", [0.11, 0.3, 0.5])
+def test_jerk_and_acceleration_count_as_no_less_than_the_firmware_states(told: float) -> None:
+    """A path by a jerk of 0.1 m/s^3 ends a kilometre below the ground."""
+    jerks = dict.fromkeys(("PSC_JERK_XY", "PSC_JERK_Z"), told)
+    shaping = DRIVER.shaping(jerks | dict.fromkeys(("WPNAV_ACCEL", "WPNAV_ACCEL_Z"), 100.0 * told))
+    assert shaping is not None
+    assert (shaping.jerk_m_s3, shaping.vertical_jerk_m_s3) == (1.0, 1.0)
+    assert (shaping.acceleration_m_s2, shaping.vertical_acceleration_m_s2) == (0.5, 0.5)
+
+
 @pytest.mark.parametrize(
     ("parameters", "tilt_deg"),
     [

@@ -42,6 +42,17 @@ def _flying() -> Setup:
     return setup
 
 
+def test_fixes_that_come_long_after_their_stamps_forbid_a_landing_and_say_by_how_much() -> None:
+    setup = _ready()
+    for _ in range(20):
+        setup.fix(late_s=1.2)
+        setup.run(0.1)
+    assert setup.node.outputs is not None
+    status = setup.node.outputs.status
+    assert status.reason_code == "STAMPS_LATE"
+    assert status.reason.startswith("vehicle's fixes come 1.2 s after their stamps")
+
+
 @pytest.mark.slow
 def test_node_arms_changes_mode_and_streams_only_after_a_start() -> None:
     setup = _ready()
