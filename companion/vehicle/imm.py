@@ -26,7 +26,7 @@ from companion.vehicle.filter_step import Update, wrapped
 from companion.vehicle.imm_frames import moved_frame, own_rate_opened_m2_s2, ranged_pad, wandering
 from companion.vehicle.imm_kernels import CURVATURE, HEADING
 from companion.vehicle.imm_mixing import Modes
-from companion.vehicle.imm_numbers import Deck, Numbers, noises_with, numbers_of, swing_of
+from companion.vehicle.imm_numbers import Deck, Numbers, noises_with, numbers_of, swing_of, turns_as_modelled
 from companion.vehicle.imm_state import (
     KINDS,
     OFFSET,
@@ -171,13 +171,14 @@ class ImmModel:
             state.modes, _own(offset_s), self._noises(state), self._motion(state), self._known_variance
         )
         means, covariances, weights = state.modes
+        is_as_modelled = turns_as_modelled(state.modes, turn_is_measured=state.turn_age_s < TURN_AGE_MAX_S)
         return Forecast(
             t_ns=t_ns,
             offset_s=offset_s,
             position_enu_m=position,
             velocity_enu_m_s=velocity,
             acceleration_enu_m_s2=acceleration,
-            yaw_rad=yaw if heading_variance < self._known_variance else None,
+            yaw_rad=yaw if heading_variance < self._known_variance and is_as_modelled else None,
             position_std_m=std[:, :3],
             climb_std_m_s=std[:, 3],
             is_coarse=state.fix_bias_variance_m2 > 0.0 or self.placed_by is Quantity.PAD,

@@ -10,8 +10,9 @@ import numpy as np
 from companion.core.data import Array
 from companion.vehicle.compiled import compiled_kernel
 from companion.vehicle.imm_kernels import HEADING as HEADING_STATE
+from companion.vehicle.imm_kernels import UNKNOWN_HEADING_VARIANCE
 from companion.vehicle.imm_mixing import Modes, combine, is_heading_known, switching
-from companion.vehicle.imm_noise import UNKNOWN_HEADING_VARIANCE, process_noise
+from companion.vehicle.imm_noise import process_noise
 from companion.vehicle.imm_sensors import COURSE, HEADING, PAD, POSITION, VELOCITY, observe
 from companion.vehicle.small_matrices import carried_through, correct, inverse_of
 

@@ -41,6 +41,7 @@ from companion.vehicle.compiled import compiled_kernel
 from companion.vehicle.imm_swing import MOUNT, OWN_RATE, PITCH, ROLL, SIZE
 
 CURVATURE, HEADING, CLOCK, BEND, LEAK = 6, 7, 15, 16, 17
+UNKNOWN_HEADING_VARIANCE = math.pi**2 / 3.0  # of an angle that may be anything
 
 
 class Turn(NamedTuple):

@@ -17,6 +17,8 @@ from companion.config.estimation import (
 )
 from companion.core.data import Array
 from companion.vehicle.deck_motion import rate_std_m_s
+from companion.vehicle.imm_kernels import CURVATURE, UNKNOWN_HEADING_VARIANCE
+from companion.vehicle.imm_mixing import Modes
 from companion.vehicle.imm_noise import (
     ACROSS_NOISE,
     ALONG_NOISE,
@@ -27,7 +29,6 @@ from companion.vehicle.imm_noise import (
     OWN_NOISE,
     OWN_RATE_NOISE,
     RECEIVER_NOISE,
-    UNKNOWN_HEADING_VARIANCE,
 )
 from link.messages import PadGeometry, Vector3
 
@@ -35,6 +36,7 @@ STEADY, EASING, BRAKING, TURNING, RAMP = range(5)
 """The models in their order."""
 Bounds = tuple[float, float]
 _STEADY_SHARE_MAX = 0.1  # of a manoeuvre's noise: a steady model as wide would be none, and the two not told apart
+CAR_CURVATURE_MAX_RAD_M = 1.0 / 3.5  # the smallest turning circle of a car is 7 m across
 ON_THE_SPOT_RAD_M = 10.0  # 1 rad/s while the middle moves at 0.1 m/s
 
 
@@ -163,6 +165,12 @@ def noises_with(
         noises[:, CURVATURE_STD] = ON_THE_SPOT_RAD_M
         noises[:, HEADING_AT_REST] = noises[:, HEADING_NOISE]
     return noises
+
+
+def turns_as_modelled(modes: Modes, *, turn_is_measured: bool) -> bool:
+    """Return whether the heading that fits the course is the vehicle's: none that turns tighter than a car is a car."""
+    means, _, weights = modes
+    return turn_is_measured or abs(float(weights @ means[:, CURVATURE])) < CAR_CURVATURE_MAX_RAD_M
 
 
 def _prior_variances(config: ImmConfig, *, is_afloat: bool) -> Array:

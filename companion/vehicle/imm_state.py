@@ -16,9 +16,8 @@ from companion.core.data import Array, Measurement, Quantity
 from companion.vehicle import imm_mixing as mixing
 from companion.vehicle import imm_sensors as sensors
 from companion.vehicle.deck_motion import DeckMotion
-from companion.vehicle.imm_kernels import BEND, CLOCK, CURVATURE, HEADING, LEAK
+from companion.vehicle.imm_kernels import BEND, CLOCK, CURVATURE, HEADING, LEAK, UNKNOWN_HEADING_VARIANCE
 from companion.vehicle.imm_mixing import Modes
-from companion.vehicle.imm_noise import UNKNOWN_HEADING_VARIANCE
 from companion.vehicle.imm_numbers import Numbers
 from companion.vehicle.imm_sensors import observe
 from companion.vehicle.imm_swing import MOUNT, OWN_RATE, ROLL, ROLL_RATE, SIZE, antenna_swing

@@ -7,6 +7,9 @@ import pytest
 
 from companion.config.estimation import EstimatorConfig, EstimatorKind, ImmConfig, ReceiversConfig
 from companion.core.data import Array
+from companion.vehicle.imm_judgement import align_modes
+from companion.vehicle.imm_kernels import HEADING
+from companion.vehicle.imm_swing import SIZE
 from link.frames.rotations import wrap_angle
 from link.records import replace
 from tests.companion.vehicle.drives import ANTENNA_TO_PAD_M, NOMINAL, Drive, drive, pad_centre
@@ -76,6 +79,33 @@ def test_car_that_reverses_keeps_its_heading(with_imu: bool) -> None:
     yaw = yaws(estimated(truth, 7, with_imu=with_imu), 8.0)
     assert np.abs(yaw - truth.yaw[0]).max() < math.radians(15.0)
     assert abs(wrap_angle(yaw[-1] - truth.yaw[-1])) < math.radians(5.0)
+
+
+@pytest.mark.parametrize(("radius_m", "speed_m_s", "is_car"), [(1.5, 1.2, False), (6.0, 4.0, True)])
+def test_heading_of_what_turns_tighter_than_a_car_is_unknown_without_a_sensor(
+    radius_m: float, speed_m_s: float, *, is_car: bool
+) -> None:
+    """It is learnt from the course as a car's, which a rover that turns about its own middle is not."""
+    truth = drive(30.0, lambda _: speed_m_s, lambda t: 0.0 if t < 10.0 else 1.0 / radius_m)
+    done = estimated(truth, 5, with_imu=False)
+    forecast = estimator(EstimatorKind.IMM, SAME_FRAME).forecast(
+        done.memory, done.estimates[-1].t_ns, np.array([0.0, 0.2])
+    )
+    assert forecast is not None
+    assert (forecast.yaw_rad is not None) is is_car
+
+
+@pytest.mark.parametrize(("off_rad", "told", "is_kept"), [(0.5, 0.0, True), (1.3, 0.0, False), (1.3, 1.0, True)])
+def test_heading_that_only_the_course_told_is_lost_where_the_vehicle_seems_to_go_sideways(
+    off_rad: float, told: float, *, is_kept: bool
+) -> None:
+    """Else it would turn on until the vehicle seems to go backwards, and a pad on a long arm with it."""
+    means = np.zeros((1, SIZE))
+    means[0, [2, HEADING]] = 6.0, off_rad
+    covariances = 1e-3 * np.eye(SIZE)[None]
+    _, after = align_modes(means, covariances, np.array([1.0, 0.09, 0.25, told]))
+    assert bool(after[0, HEADING, HEADING] <= covariances[0, HEADING, HEADING]) is is_kept
+    assert np.linalg.eigvalsh(after[0]).min() > 0.0
 
 
 def test_rover_that_turns_on_the_spot_is_followed_by_its_heading_sensor() -> None:
