@@ -118,7 +118,7 @@ def _situation(memory: StepMemory, pad: PadPath | None, inputs: StepInputs, syst
             rejected_share=vehicle.contradictions.rejected_share,
             are_sightings_mixed=vehicle.sightings.are_mixed,
             has_pad_stepped=vehicle.sightings.has_stepped,
-            is_road_elsewhere=vehicle.is_road_elsewhere,
+            is_road_elsewhere=bool(vehicle.is_road_elsewhere),
         ),
         below=Below(
             range_height_m=range_height_m(inputs.own, seen, sensor_m, inputs.t_ns),

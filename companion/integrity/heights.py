@@ -18,6 +18,7 @@ VEHICLE_M = 3.0  # so near the pad what the drone stands on may be the vehicle
 _STDS = 2.0
 _LEAN_MAX = 0.4  # sine; a drone that leans more turns too fast for the attitude to be that of the reading
 _COARSE_OFF_M = 0.7  # twice what over poor receivers the estimates of both heights have been seen to differ by
+_BEFORE_IT_IS_FOLLOWED = frozenset({Phase.TAKEOFF, Phase.WAITING})
 
 
 def update_ground(ground: Array | None, phase: Phase, s: Situation) -> Array | None:
@@ -58,8 +59,10 @@ def road_distance_m(s: Situation) -> float:
     return math.hypot(*(s.pad.position_enu_m[0, :2] - s.below.ground_enu_m[:2]).tolist())
 
 
-def is_road_elsewhere(was: bool, phase: Phase, s: Situation, c: CompanionConfig) -> bool:
-    """Return whether the vehicle is said to be higher or lower than any hill puts it.
+def is_road_elsewhere(was: bool | None, phase: Phase, s: Situation, c: CompanionConfig) -> bool | None:
+    """Return whether the vehicle is said to be higher or lower than any hill puts it, None before that can be judged.
+
+    A vehicle that is followed since it was not has told the altitude of the right kind: it may climb where it likes.
 
     Args:
         was: so far; in flight that outlasts a vehicle's departure, for far away nothing tells.
@@ -67,15 +70,18 @@ def is_road_elsewhere(was: bool, phase: Phase, s: Situation, c: CompanionConfig)
         s: the facts.
         c: all numbers.
     """
-    if _is_off_the_ground(s, c):
+    if was is False and phase in FLYING_PHASES - _BEFORE_IT_IS_FOLLOWED:
+        return False
+    is_off = _is_off_the_ground(s, c)
+    if was and not is_off and phase in FLYING_PHASES and road_distance_m(s) > c.chase.passing_distance_m:
         return True
-    return was and phase in FLYING_PHASES and road_distance_m(s) > c.chase.passing_distance_m
+    return is_off
 
 
-def _is_off_the_ground(s: Situation, c: CompanionConfig) -> bool:
+def _is_off_the_ground(s: Situation, c: CompanionConfig) -> bool | None:
     above_m, distance_m = road_above_ground_m(s), road_distance_m(s)
     if s.pad is None or s.pad.mounting.is_afloat or above_m is None or distance_m > c.integrity.ground_within_m:
-        return False
+        return None
     unsure_m = _STDS * float(s.pad.position_std_m[0, 2]) if s.pad.is_coarse else 0.0
     return abs(above_m) > max(c.integrity.ground_step_max_m, unsure_m) + c.integrity.ground_slope_max * distance_m
 

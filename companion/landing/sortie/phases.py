@@ -76,7 +76,7 @@ def clear_of_vehicle(anchor_enu_m: Array, memory: StepMemory, situation: Situati
 
 def _without_ground(memory: StepMemory) -> StepMemory:
     """Return the memory of a drone on the deck: what it has stood on is no ground."""
-    vehicle = replace(memory.vehicle, is_road_elsewhere=False)
+    vehicle = replace(memory.vehicle, is_road_elsewhere=None)
     return replace(memory, vehicle=vehicle, places=replace(memory.places, ground_enu_m=None))
 
 

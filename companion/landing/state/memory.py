@@ -81,7 +81,7 @@ class VehicleMemory(Struct, frozen=True, kw_only=True, eq=False):
         course: how its heading compares with its course.
         utc_ahead_ns: of the monotonic clock, when its stamps were last compared with UTC.
         ranges: the last readings of the drone's range finder.
-        is_road_elsewhere: it is said to be far above or below the ground.
+        is_road_elsewhere: it is said to be far above or below the ground; None before that can be judged.
         frame_moves: of the frame that the estimate and the ranges are in.
     """
 
@@ -94,7 +94,7 @@ class VehicleMemory(Struct, frozen=True, kw_only=True, eq=False):
     course: CourseWatch = field(default_factory=CourseWatch)
     utc_ahead_ns: int = 0
     ranges: RangeWatch = field(default_factory=RangeWatch)
-    is_road_elsewhere: bool = False
+    is_road_elsewhere: bool | None = None
     frame_moves: FrameMoves = NO_MOVES
 
 

@@ -33,7 +33,7 @@ def near(sunk_m: float, away_m: float, pad: PadPath | None = None) -> Situation:
     ],
 )
 def test_road_far_off_the_ground_beside_it_is_no_hill(sunk_m: float, away_m: float, expected: bool) -> None:
-    assert is_road_elsewhere(False, Phase.WAITING, near(sunk_m, away_m), CONFIG) is expected
+    assert bool(is_road_elsewhere(None, Phase.WAITING, near(sunk_m, away_m), CONFIG)) is expected
 
 
 def test_height_that_is_told_vaguely_may_be_farther_off() -> None:
@@ -74,8 +74,17 @@ def test_in_flight_it_is_not_forgotten_of_a_vehicle_that_leaves() -> None:
     assert not is_road_elsewhere(True, Phase.WAITING, near(0.5, 10.0), CONFIG)
 
 
+@pytest.mark.parametrize("phase", [Phase.CHASE, Phase.DESCEND, Phase.ABORT, Phase.HOLD])
+def test_vehicle_that_is_followed_since_it_was_on_the_ground_may_climb_where_it_likes(phase: Phase) -> None:
+    """As on the ramp of a garage, round and round above where the drone took off."""
+    above = near(6.0, 10.0)
+    assert is_road_elsewhere(False, phase, above, CONFIG) is False
+    assert is_road_elsewhere(None, phase, above, CONFIG) is True
+    assert is_road_elsewhere(False, Phase.WAITING, above, CONFIG) is True
+
+
 def test_without_known_ground_nothing_is_said() -> None:
-    assert not is_road_elsewhere(False, Phase.WAITING, changed(near(30.0, 10.0), ground_enu_m=None), CONFIG)
+    assert is_road_elsewhere(None, Phase.WAITING, changed(near(30.0, 10.0), ground_enu_m=None), CONFIG) is None
 
 
 def test_ground_is_where_the_drone_stands_and_stays_in_flight() -> None:
