@@ -63,6 +63,12 @@ def _place(boot_ms: int) -> Message:
     return mavlink.MAVLink_local_position_ned_message(boot_ms, 0.3, -0.2, -0.4, 0.0, 0.0, 0.0)
 
 
+def _receiver() -> Message:
+    """Of one that has the sea 60 m above the ellipsoid."""
+    at = (524_000_000, 134_000_000, 40_000)
+    return mavlink.MAVLink_gps_raw_int_message(0, 3, *at, 80, 80, 0, 0, 12, alt_ellipsoid=100_000)
+
+
 def _switched(to: Command, boot_ms: int) -> Message:
     pulses_us = [1500] * 18
     pulses_us[_SWITCH_CHANNEL - 1] = _PULSES_US[to]
@@ -84,11 +90,12 @@ SPOOFS: Mapping[str, Callable[[Now], Message]] = {
     "range": lambda now: mavlink.MAVLink_distance_sensor_message(now.boot_ms, 10, 5000, 300, 0, 0, 25, 0),
     "battery": lambda _: mavlink.MAVLink_battery_status_message(0, 0, 0, 0, [3000] * 10, 0, 0, 0, 1),
     "pilot's switch": lambda now: _switched(Command.START, now.boot_ms),
+    "geoid": lambda _: _receiver(),
 }
 
 UNSIGNED: Mapping[str, frozenset[str]] = {
     "mode": frozenset({"in_control"}),
-    "disarmed": frozenset({"armed"}),
+    "disarmed": frozenset(),
     "failsafe": frozenset({"failsafe"}),
     "place": frozenset({"own", "range_down"}),  # a distance stays, but nobody knows from where it was seen
     "place, 3 s ahead": frozenset(),
@@ -99,8 +106,9 @@ UNSIGNED: Mapping[str, frozenset[str]] = {
     "parameter": frozenset({"timeout_s"}),
     "acknowledgement": frozenset(),
     "range": frozenset({"range_down"}),
-    "battery": frozenset({"battery_share"}),
+    "battery": frozenset(),
     "pilot's switch": frozenset(),
+    "geoid": frozenset(),
 }
 """What each changes under the autopilot's own address: docs/safety.md, "Who may give orders"."""
 
