@@ -63,6 +63,7 @@ def is_road_elsewhere(was: bool | None, phase: Phase, s: Situation, c: Companion
     """Return whether the vehicle is said to be higher or lower than any hill puts it, None before that can be judged.
 
     A vehicle that is followed since it was not has told the altitude of the right kind: it may climb where it likes.
+    One that is said to be far below the ground is doubted all the same, for a drone would fly into that.
 
     Args:
         was: so far; in flight that outlasts a vehicle's departure, for far away nothing tells.
@@ -70,7 +71,8 @@ def is_road_elsewhere(was: bool | None, phase: Phase, s: Situation, c: Companion
         s: the facts.
         c: all numbers.
     """
-    if was is False and phase in FLYING_PHASES - _BEFORE_IT_IS_FOLLOWED:
+    above_m = road_above_ground_m(s)
+    if was is False and phase in FLYING_PHASES - _BEFORE_IT_IS_FOLLOWED and (above_m is None or above_m > 0.0):
         return False
     is_off = _is_off_the_ground(s, c)
     if was and not is_off and phase in FLYING_PHASES and road_distance_m(s) > c.chase.passing_distance_m:

@@ -77,9 +77,10 @@ def test_in_flight_it_is_not_forgotten_of_a_vehicle_that_leaves() -> None:
 @pytest.mark.parametrize("phase", [Phase.CHASE, Phase.DESCEND, Phase.ABORT, Phase.HOLD])
 def test_vehicle_that_is_followed_since_it_was_on_the_ground_may_climb_where_it_likes(phase: Phase) -> None:
     """As on the ramp of a garage, round and round above where the drone took off."""
-    above = near(6.0, 10.0)
+    above = near(-6.0, 10.0)
     assert is_road_elsewhere(False, phase, above, CONFIG) is False
     assert is_road_elsewhere(None, phase, above, CONFIG) is True
+    assert is_road_elsewhere(False, phase, near(6.0, 10.0), CONFIG) is True
     assert is_road_elsewhere(False, Phase.WAITING, above, CONFIG) is True
 
 
