@@ -6,6 +6,7 @@ disarm was asked for and accepted. Until then the motors may turn.
 
 from companion.autopilots.driver import AutopilotView, Driver
 from link.mavlink.dialect import Message, mavlink
+from link.mavlink.events import CommandAcknowledged
 from link.records import replace
 
 _FAILSAFE_STATES = (mavlink.MAV_STATE_CRITICAL, mavlink.MAV_STATE_EMERGENCY)
@@ -33,9 +34,10 @@ def with_heartbeat(view: AutopilotView, message: Message, driver: Driver) -> Aut
     )
 
 
-def with_acknowledgement(view: AutopilotView, command: int, result: int) -> AutopilotView:
+def with_acknowledgement(view: AutopilotView, answer: CommandAcknowledged) -> AutopilotView:
     """Return the view after an answer; while it is armed, only a disarm can have been asked for."""
-    is_disarm = command == mavlink.MAV_CMD_COMPONENT_ARM_DISARM and result == mavlink.MAV_RESULT_ACCEPTED
+    is_accepted = answer.result == mavlink.MAV_RESULT_ACCEPTED
+    is_disarm = is_accepted and answer.command == mavlink.MAV_CMD_COMPONENT_ARM_DISARM
     return replace(view, disarm_told=True) if is_disarm and view.armed else view
 
 

@@ -51,10 +51,7 @@ class AutopilotLink:
     """
 
     def __init__(
-        self,
-        session: MavlinkSession,
-        config: AutopilotConfig = _BY_ITSELF,
-        motion_rate_hz: float = 50.0,
+        self, session: MavlinkSession, config: AutopilotConfig = _BY_ITSELF, motion_rate_hz: float = 50.0
     ) -> None:
         self.session = session
         self._config = config
@@ -163,8 +160,7 @@ class AutopilotLink:
                     if event.result != mavlink.MAV_RESULT_IN_PROGRESS:
                         self._take_answer(event.command, event.ticket)
                     self._acknowledgements.append((event.command, event.result))
-                    view = with_acknowledgement(self.state.view, event.command, event.result)
-                    self.state = replace(self.state, view=view)
+                    self.state = replace(self.state, view=with_acknowledgement(self.state.view, event))
                 case CommandTimedOut():
                     self._take_answer(event.command, event.ticket)
                 case ParameterMissing():

@@ -42,6 +42,21 @@ def _flying() -> Setup:
     return setup
 
 
+@pytest.mark.parametrize(("phase", "counts"), [(Phase.CHASE, True), (Phase.DESCEND, False), (Phase.TOUCHDOWN, False)])
+def test_limits_that_change_in_a_descent_count_after_it(phase: Phase, *, counts: bool) -> None:
+    setup = _ready()
+    node, before = setup.node, setup.node.inputs
+    assert before is not None
+    node.memory = replace(node.memory, progress=replace(node.memory.progress, phase=phase))
+    state = node.autopilot.state
+    node.autopilot.state = replace(state, parameters={**state.parameters, "MPC_XY_VEL_MAX": 3.0})
+    while node.inputs is before:
+        setup.t_ns += 1_000_000
+        node.poll(setup.t_ns)
+    assert node.inputs is not None
+    assert (node.inputs.limits.speed_max_m_s == 3.0) is counts
+
+
 def test_fixes_that_come_long_after_their_stamps_forbid_a_landing_and_say_by_how_much() -> None:
     setup = _ready()
     for _ in range(20):
