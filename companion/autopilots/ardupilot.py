@@ -55,10 +55,8 @@ _JERK_SHARE = 0.8
 # The ends of their stated ranges, so that no parameter, nor one that somebody else tells, makes a path without an end.
 # PSC_JERK_Z is stated from 5 on, and is landed with at less.
 _JERK_LEAST_M_S3, _ACCELERATION_LEAST_M_S2 = 1.0, 0.5
-_JERK = (
-    Named("PSC_JERK_XY", least=_JERK_LEAST_M_S3),
-    Named("PSC_JERK_NE", least=_JERK_LEAST_M_S3),
-)  # it follows no acceleration that changes faster
+# It follows no acceleration that changes faster.
+_JERK = tuple(Named(name, least=_JERK_LEAST_M_S3) for name in ("PSC_JERK_XY", "PSC_JERK_NE"))
 # It bounds that jerk by what its attitude controller can do, too (AC_PosControl::set_max_speed_accel_xy).
 _ACCELERATION = (
     Named("WPNAV_ACCEL", _CENTI, _ACCELERATION_LEAST_M_S2),

@@ -119,7 +119,8 @@ def shift_reports(state: AutopilotState, by_ns: int) -> AutopilotState:
     history = tuple(replace(own, t_ns=own.t_ns + by_ns) for own in state.history)
     seen, moves = state.view.range_down, state.view.frame_moves
     seen = None if seen is None else replace(seen, t_ns=seen.t_ns + by_ns)
-    view = replace(state.view, range_down=seen, frame_moves=replace(moves, stepped_ns=moves.stepped_ns + by_ns))
+    moves = replace(moves, stepped_ns=moves.stepped_ns + by_ns) if moves.stepped_ns else moves
+    view = replace(state.view, range_down=seen, frame_moves=moves)
     return replace(state, history=history, view=view, doubted_ns=state.doubted_ns + by_ns)
 
 

@@ -20,7 +20,7 @@ from companion.planning.guidance import PlanRequest, PlanResult, ReferenceState,
 from companion.situation.phases import FLYING_PHASES, LANDING_PHASES, STATION_PHASES, Phase
 from companion.situation.situation import Drone, Situation
 from companion.vehicle.pad import PadPath
-from companion.vehicle.pad_reach import over_pad_radius_m
+from companion.vehicle.pad_reach import left_behind_m
 from link.frames.rotations import wrap_angle
 from link.records import replace
 
@@ -196,8 +196,8 @@ def _is_left_by_pad(memory: StepMemory, situation: Situation, config: CompanionC
     relative = situation.approach
     if memory.progress.phase is not Phase.TOUCHDOWN or relative is None:
         return False
-    left_m = 2.0 * over_pad_radius_m(relative.pad_half_width_m, config)
-    return relative.speed_m_s > config.abort.near_speed_max_m_s or relative.distance_m > left_m
+    is_left = relative.distance_m > left_behind_m(relative.pad_half_width_m, config)
+    return is_left or relative.speed_m_s > config.abort.near_speed_max_m_s
 
 
 def _to_lost_drone(memory: StepMemory, situation: Situation) -> StepMemory:

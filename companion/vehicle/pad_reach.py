@@ -32,6 +32,11 @@ def over_pad_radius_m(half_width_m: float, config: CompanionConfig) -> float:
     return min(2.0 * config.descent.cone.radius_at_pad_m, _CONTACT_SHARE * half_width_m)
 
 
+def left_behind_m(half_width_m: float, config: CompanionConfig) -> float:
+    """Return how far from the pad's centre a drone has been left by a pad that it had touched."""
+    return 2.0 * over_pad_radius_m(half_width_m, config)
+
+
 def unseen_std_max_m(half_width_m: float, config: CompanionConfig) -> float:
     """Return up to which standard deviation a pad is landed on that only what is seen of it can place."""
     return min(config.descent.unseen.std_max_m, KNOWN_SHARE * half_width_m)

@@ -33,7 +33,7 @@ from companion.landing.decisions.waiting import waited_s
 from companion.landing.state.memory import ControlMemory, Held, Progress
 from companion.situation.phases import FLYING_PHASES, LANDING_PHASES, Event, Phase
 from companion.situation.situation import Situation
-from companion.vehicle.pad_reach import over_pad_radius_m
+from companion.vehicle.pad_reach import left_behind_m
 
 _COMMITTED = (*MISSED, CONTACT_RISKY)
 _STDS = 2.0  # by which the pad may be elsewhere
@@ -213,7 +213,7 @@ def _is_left_in_the_air(s: Situation, config: CompanionConfig) -> bool:
     if a is None or s.pad is None or s.autopilot.landed is True or is_fix_old(s, config):
         return False
     surely_m = a.distance_m - _STDS * float(max(s.pad.position_std_m[0, :2].tolist()))
-    if surely_m <= 2.0 * over_pad_radius_m(a.pad_half_width_m, config):
+    if surely_m <= left_behind_m(a.pad_half_width_m, config):
         return False
     if seen_m is not None:
         return seen_m > config.touchdown.range_finder.contact_height_max_m
