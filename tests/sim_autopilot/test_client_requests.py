@@ -5,6 +5,7 @@ from math import nan
 import pytest
 
 from link.mavlink.dialect import Message, mavlink
+from sim_autopilot.memory import AutopilotConfig
 from tests.sim_autopilot.clients import Clients, beat
 from tests.sim_autopilot.copter import ardupilot, copter_in_the_air
 from tests.sim_autopilot.pilot import DATUM, TAKEOFF, Pilot, arm, command, px4
@@ -113,9 +114,9 @@ def test_px4_takes_off_to_the_height_asked_for_whether_before_arming_or_after(*,
 
 
 @pytest.mark.parametrize("config", [px4(), ardupilot()])
-def test_a_parameter_changed_on_one_link_is_told_once_on_each(config: object) -> None:
-    clients = Clients(config)  # type: ignore[arg-type]
-    name = b"MPC_XY_CRUISE" if config.firmware.name == "px4" else b"WPNAV_SPEED_UP"  # type: ignore[attr-defined]
+def test_a_parameter_changed_on_one_link_is_told_once_on_each(config: AutopilotConfig) -> None:
+    clients = Clients(config)
+    name = b"MPC_XY_CRUISE" if config.firmware.name == "px4" else b"WPNAV_SPEED_UP"
     clients.send(0, beat())
     clients.send(1, _set(name, 4.0))
     clients.run(0.05)
@@ -124,8 +125,8 @@ def test_a_parameter_changed_on_one_link_is_told_once_on_each(config: object) ->
 
 
 @pytest.mark.parametrize("config", [px4(instant=False), ardupilot(instant=False)])
-def test_a_ground_station_reads_why_a_companions_arming_is_refused_on_another_link(config: object) -> None:
-    clients = Clients(config)  # type: ignore[arg-type]
+def test_a_ground_station_reads_why_a_companions_arming_is_refused_on_another_link(config: AutopilotConfig) -> None:
+    clients = Clients(config)
     clients.send(0, beat())
     clients.run(0.05)
     clients.forget()

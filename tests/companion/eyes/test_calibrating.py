@@ -98,7 +98,7 @@ def test_rendered_pictures_in_a_folder_give_their_camera(tmp_path: Path) -> None
             aside_m=aside_m,
             board=BOARD.config,
         )
-        cv2.imwrite(str(tmp_path / f"{index:03d}.png"), one.frame.picture.shades)  # type: ignore[attr-defined]
+        cv2.imwrite(str(tmp_path / f"{index:03d}.png"), one.frame.picture.shades)  # type: ignore[attr-defined]  # a whole one
     told: list[str] = []
     found, size_px = collect_shots(FolderSource(tmp_path, start_ns=0, rate_hz=30.0), BOARD, 40, told.append)
     camera, quality = calibrate(found, BOARD, size_px, "pinhole")
