@@ -117,6 +117,13 @@ class ClockMap(Struct, frozen=True, kw_only=True):
             return local_ns
         return _bounded(self.boot_to_utc.y_ns(self.local_to_boot.y_ns(local_ns)))
 
+    def is_ahead(self, boot_ns: int, local_ns: int) -> bool:
+        """Whether `boot_ns` is still to come at a local time, by more than both clocks can be apart."""
+        now_ns, std_ns = self.local_to_boot_ns(local_ns), self.local_to_boot_std_ns(local_ns)
+        if now_ns is None or std_ns is None:
+            return False
+        return boot_ns - now_ns > DEFAULT_CLOCK_CONFIG.step_ns + 5.0 * std_ns
+
     def local_to_boot_std_ns(self, local_ns: int) -> float | None:
         """Standard deviation of `local_to_boot_ns` by the scatter that the link is known for, None when unknown."""
         return None if self.local_to_boot is None else self.local_to_boot.std_ns(local_ns)

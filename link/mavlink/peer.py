@@ -2,12 +2,13 @@
 
 from dataclasses import dataclass
 
+from link.mavlink.clock_map import ClockMap
 from link.mavlink.dialect import COMMAND_CANCEL_ID, Message, mavlink
 from link.mavlink.events import AutopilotRestarted, Event, LinkFound, LinkLost, LinkRegained
 
 _BROADCAST = 0
 LOST_AFTER_NS = 3_000_000_000  # of silence: three of the autopilot's heartbeats
-_JUMP_NS = 1_000_000_000  # boot time falling back by more is a restart, by less a late message; ahead, it was set
+_JUMP_NS = 1_000_000_000  # boot time falling back by more is a restart, by less a late message
 _JUMP_CONFIRMATIONS = 3  # so many messages in a row have to say so
 
 
@@ -133,13 +134,11 @@ class RestartWatch:
         self._earlier_in_a_row = 0
         self._ahead_in_a_row = 0
 
-    def doubts(self, boot_ns: int, t_ns: int) -> bool:
-        """Whether a boot time, ahead of the newest by more than time has passed, is to be confirmed by further ones."""
-        if self._heard_ns is None or boot_ns <= self._newest_ns + (t_ns - self._heard_ns) + _JUMP_NS:
-            self._ahead_in_a_row = 0
-            return False
-        self._ahead_in_a_row = (self._ahead_in_a_row + 1) % _JUMP_CONFIRMATIONS
-        return self._ahead_in_a_row > 0
+    def doubts(self, boot_ns: int, t_ns: int, clock: ClockMap) -> bool:
+        """Whether a boot time, ahead of what the clock can show by now, is to be confirmed by further ones."""
+        is_jump = self._heard_ns is not None and boot_ns > self._newest_ns + (t_ns - self._heard_ns) + _JUMP_NS
+        self._ahead_in_a_row = self._ahead_in_a_row + 1 if is_jump or clock.is_ahead(boot_ns, t_ns) else 0
+        return 0 < self._ahead_in_a_row < _JUMP_CONFIRMATIONS
 
     @property
     def is_behind(self) -> bool:

@@ -189,7 +189,7 @@ class MavlinkSession:
 
     def _take(self, message: Message, t_ns: int) -> list[Event]:
         boot_ns = boot_time_ns(message)
-        if not self._peer.accepts(message) or (boot_ns and self._restarts.doubts(boot_ns, t_ns)):
+        if not self._peer.accepts(message) or (boot_ns and self._restarts.doubts(boot_ns, t_ns, self.clock)):
             self._filtered += 1
             return []
         events = self._peer.heard(message, t_ns)

@@ -127,19 +127,21 @@ def test_sender_without_the_key_is_neither_listened_to_nor_sent_to(listener: Udp
         assert stranger.receive(0.01) == b""
 
 
-def test_single_message_from_a_boot_time_ahead_is_not_believed_and_restarts_nothing() -> None:
+@pytest.mark.parametrize("ahead_ns", [S // 5, 9 * S // 10, 3 * S])
+def test_single_message_from_a_boot_time_ahead_is_not_believed_and_restarts_nothing(ahead_ns: int) -> None:
     run = Pair(MavlinkSession(1, target_system_id=1), FakeAutopilot())
     run.run(2.0)
-    ahead_ms = (run.autopilot.boot_ns(run.t_ns) + 3 * S) // MS
+    ahead_ms = (run.autopilot.boot_ns(run.t_ns) + ahead_ns) // MS
     forged = mavlink.MAVLink_local_position_ned_message(ahead_ms, 50.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     assert run.session.receive(run.autopilot.codec.encode(forged), run.t_ns) == []
     assert of_kind(run.run(6.0), AutopilotRestarted) == []
 
 
-def test_boot_time_that_goes_on_ahead_is_believed() -> None:
+@pytest.mark.parametrize("ahead_ns", [S // 2, 3 * S])
+def test_boot_time_that_goes_on_ahead_is_believed(ahead_ns: int) -> None:
     run = Pair(MavlinkSession(1, target_system_id=1), FakeAutopilot())
     run.run(2.0)
-    run.autopilot.boot_at_ns -= 3 * S
+    run.autopilot.boot_at_ns -= ahead_ns
     events = run.run(6.0)
     times = [one.message for one in of_kind(events, MessageReceived) if one.message.get_type() == "SYSTEM_TIME"]
     assert run.t_ns > START_NS
