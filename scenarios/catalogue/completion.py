@@ -22,10 +22,10 @@ def place_drone(scenario: Scenario) -> Scenario:
     """Return `scenario` with a drone on the deck of a vehicle that drives, or on the road clear of one that stands.
 
     Raises:
-        UserError: the file places the drone inside the vehicle.
+        UserError: the file places the drone inside the vehicle, or where it never comes to the waiting point.
     """
     if scenario.run.place == "road":
-        return keep_clear_of_vehicle(scenario)
+        return _wait_above_start(keep_clear_of_vehicle(_start_below_waiting_point(scenario)))
     departure = scenario.track.departure.model_copy(update={"wait_for_drone": False, "departs_s": 0.0})
     return scenario.model_copy(update={"track": scenario.track.model_copy(update={"departure": departure})})
 
@@ -33,8 +33,8 @@ def place_drone(scenario: Scenario) -> Scenario:
 def keep_clear_of_vehicle(scenario: Scenario) -> Scenario:
     """Return `scenario` with a drone that does not begin inside the vehicle.
 
-    Where the file names neither the drone's start nor the waiting point, both move ahead of the vehicle's front; the
-    waiting point keeps its height. A drone may begin on the roof.
+    Where the file names neither the drone's start nor the waiting point, the drone starts ahead of the vehicle's front.
+    A drone may begin on the roof.
 
     Raises:
         UserError: the file places the drone inside the vehicle.
@@ -51,10 +51,41 @@ def keep_clear_of_vehicle(scenario: Scenario) -> Scenario:
     before_m = 0.5 * scenario.vehicle.length_m + _AHEAD_M
     east_m = vehicle.position_enu_m[0] + before_m * math.cos(vehicle.yaw_rad)
     north_m = vehicle.position_enu_m[1] + before_m * math.sin(vehicle.yaw_rad)
-    return scenario.with_run(
-        drone_start_enu_m=(east_m, north_m, vehicle.position_enu_m[2]),
-        waiting_point_enu_m=(east_m, north_m, scenario.run.waiting_point_enu_m[2]),
-    )
+    return scenario.with_run(drone_start_enu_m=(east_m, north_m, vehicle.position_enu_m[2]))
+
+
+def _start_below_waiting_point(scenario: Scenario) -> Scenario:
+    """Return `scenario` with a drone that starts below the waiting point, where the file names this alone."""
+    run, companion = scenario.run, scenario.system.companion
+    if "waiting_point_enu_m" not in run.model_fields_set:
+        return scenario
+    east_m, north_m, up_m = run.waiting_point_enu_m
+    height_m = up_m - run.drone_start_enu_m[2]
+    if "waiting_height_m" not in companion.takeoff.model_fields_set and height_m > 0.0:
+        scenario = _with_companion(scenario, _waiting_at(companion, height_m))
+    if "drone_start_enu_m" in run.model_fields_set:
+        return scenario
+    return scenario.with_run(drone_start_enu_m=(east_m, north_m, run.drone_start_enu_m[2]))
+
+
+def _wait_above_start(scenario: Scenario) -> Scenario:
+    """Return `scenario` with a vehicle that waits for the drone where the drone waits: straight above its start.
+
+    Raises:
+        UserError: the file says more than one thing of where that is.
+    """
+    run, departure = scenario.run, scenario.track.departure
+    east_m, north_m, up_m = run.drone_start_enu_m
+    above_start_enu_m = (east_m, north_m, up_m + scenario.system.companion.takeoff.waiting_height_m)
+    if "waiting_point_enu_m" not in run.model_fields_set:
+        return scenario.with_run(waiting_point_enu_m=above_start_enu_m)
+    apart_m = math.dist(above_start_enu_m, run.waiting_point_enu_m)
+    if departure.wait_for_drone and apart_m > departure.hover_radius_m:
+        raise UserError(
+            f"{scenario.name}: the drone would wait {apart_m:.1f} m from run.waiting_point_enu_m, and the vehicle would"
+            " never depart; change that, run.drone_start_enu_m or system.companion.takeoff.waiting_height_m"
+        )
+    return scenario
 
 
 def _is_inside(drone_enu_m: Vector3, vehicle: VehicleState, scenario: Scenario) -> bool:
@@ -86,10 +117,11 @@ def look_out_for_silent_vehicle(scenario: Scenario) -> Scenario:
         known = SilentVehicleConfig(pad_size_m=body.pad_size_m, pad_height_m=body.roof_height_m)
         companion = companion.model_copy(update={"silent_vehicle": known})
     if "waiting_point_enu_m" not in scenario.run.model_fields_set and not companion.takeoff.model_fields_set:
-        waiting_m = body.roof_height_m + companion.chase.unseen_height_max_m
-        companion = _waiting_at(companion, waiting_m)
-        east_m, north_m, _ = scenario.run.waiting_point_enu_m
-        scenario = scenario.with_run(waiting_point_enu_m=(east_m, north_m, waiting_m))
+        companion = _waiting_at(companion, body.roof_height_m + companion.chase.unseen_height_max_m)
+    return _with_companion(scenario, companion)
+
+
+def _with_companion(scenario: Scenario, companion: CompanionConfig) -> Scenario:
     system = scenario.system.model_copy(update={"companion": companion})
     return scenario.model_copy(update={"system": system})
 

@@ -1,4 +1,4 @@
-"""No drone begins inside the vehicle."""
+"""No drone begins inside the vehicle, and each waits where the vehicle expects it."""
 
 import math
 from pathlib import Path
@@ -61,3 +61,37 @@ def test_drone_may_begin_on_the_roof_or_beside_the_vehicle(tmp_path: Path) -> No
 def test_pad_on_the_road_is_no_vehicle_to_be_inside_of(tmp_path: Path) -> None:
     scenario = load_scenario(written(tmp_path, 'vehicle = "report"'))
     assert scenario.run.drone_start_enu_m == (0.0, 0.0, 0.0)
+
+
+HEIGHT = "system.companion.takeoff.waiting_height_m"
+
+
+@pytest.mark.parametrize(
+    ("places", "start_enu_m", "height_m"),
+    [
+        ("run.waiting_point_enu_m = [3.0, -20.0, 8.0]", (3.0, -20.0, 0.0), 8.0),
+        ("run.drone_start_enu_m = [3.0, -20.0, 2.0]", (3.0, -20.0, 2.0), 5.0),
+        (f"run.drone_start_enu_m = [3.0, -20.0, 2.0]\n{HEIGHT} = 7.0", (3.0, -20.0, 2.0), 7.0),
+        (f"run.waiting_point_enu_m = [3.0, -20.0, 7.0]\n{HEIGHT} = 7.0", (3.0, -20.0, 0.0), 7.0),
+    ],
+)
+def test_what_is_left_open_of_where_the_drone_waits_follows_from_the_rest(
+    tmp_path: Path, places: str, start_enu_m: tuple[float, float, float], height_m: float
+) -> None:
+    scenario = load_scenario(written(tmp_path, places))
+    east_m, north_m, up_m = scenario.run.waiting_point_enu_m
+    assert scenario.run.drone_start_enu_m == start_enu_m
+    assert (east_m, north_m, up_m - start_enu_m[2]) == (*start_enu_m[:2], height_m)
+    assert scenario.system.companion.takeoff.waiting_height_m == height_m
+
+
+@pytest.mark.parametrize(
+    "places",
+    [
+        f"run.waiting_point_enu_m = [3.0, -20.0, 8.0]\n{HEIGHT} = 5.0",
+        "run.waiting_point_enu_m = [3.0, -20.0, 8.0]\nrun.drone_start_enu_m = [0.0, -20.0, 0.0]",
+    ],
+)
+def test_drone_that_would_wait_elsewhere_is_refused_with_what_to_change(tmp_path: Path, places: str) -> None:
+    with pytest.raises(UserError, match=r"the vehicle would never depart; change that, run.drone_start_enu_m or"):
+        load_scenario(written(tmp_path, places))
