@@ -8,7 +8,6 @@ from companion.core.reasons import Cause, Reason
 from companion.landing.decisions.aborts import (
     ABORTS,
     CONTACT_RISKY,
-    is_out_of_range,
     is_over_pad,
     is_pad_unplaced,
     is_uncertain,
@@ -16,19 +15,18 @@ from companion.landing.decisions.aborts import (
     why_unplaced,
 )
 from companion.landing.decisions.conditions import (
-    HEARD,
     LIFTED,
     MISSED,
     STOPPED_BY_PAD,
     Condition,
     cause_of,
     holds,
-    is_attitude_unknown,
     is_below_pad,
     is_fix_old,
 )
 from companion.landing.decisions.entries import DRIVES, ENTRIES, Decision, vehicle_passes
 from companion.landing.decisions.feasibility import is_drone_taken, obstacle
+from companion.landing.decisions.retries import end_climb
 from companion.landing.decisions.waiting import waited_s
 from companion.landing.state.memory import ControlMemory, Held, Progress
 from companion.situation.phases import FLYING_PHASES, LANDING_PHASES, Event, Phase
@@ -113,9 +111,6 @@ def _find_taken_control(phase: Phase, control: ControlMemory, s: Situation) -> D
     return None
 
 
-_LASTING = (Reason.OFFSET_UNKNOWN, Reason.SEEN_ELSEWHERE, Reason.SIGHTINGS_DISAGREE)
-"""What the drone looked with the first time is all that it has to look with."""
-
 TOO_LONG = {
     Phase.LIFT_OFF: Reason.LIFT_OFF_TOO_LONG,
     Phase.RETURN: Reason.RETURN_TOO_LONG,
@@ -167,7 +162,7 @@ def _advance(progress: Progress, s: Situation, config: CompanionConfig) -> Decis
         case Phase.TOUCHDOWN:
             return _on_the_pad(s, progress.held, config)
         case Phase.ABORT:
-            return _end_climb(progress, s, config)
+            return end_climb(progress, s, config)
         case _:
             return None
 
@@ -218,37 +213,3 @@ def _is_left_in_the_air(s: Situation, config: CompanionConfig) -> bool:
     if seen_m is not None:
         return seen_m > config.touchdown.range_finder.contact_height_max_m
     return surely_m > config.sortie.vehicle_radius_m
-
-
-def _end_climb(progress: Progress, s: Situation, config: CompanionConfig) -> Decision | None:
-    in_phase_s = (s.monotonic_ns - progress.since_ns) * 1e-9
-    high = s.approach is not None and s.approach.height_m > 0.8 * config.abort.height_m
-    ready = high and holds(HEARD, progress.held, s, config)
-    if not ready and in_phase_s < config.abort.time_limit_s:
-        return None
-    why_not = _no_retry(progress, s, config)
-    if why_not is not None:
-        return Event.CLEAR_TO_HOLD, why_not
-    if progress.interrupted_ns is not None:
-        return Event.CLEAR, Cause(Reason.HEARD_AGAIN)
-    return Event.CLEAR, Cause(Reason.RETRY, (progress.retries + 1, config.abort.retries_max))
-
-
-def _no_retry(progress: Progress, s: Situation, config: CompanionConfig) -> Cause | None:
-    """Return why no other approach is made, the first of all causes; None when one is."""
-    known = {
-        Reason.BROKEN_OFF: not progress.may_retry,
-        Reason.NO_VEHICLE_DATA: is_fix_old(s, config),
-        Reason.OWN_POSITION_OLD: s.drone is None,
-        Reason.OWN_ATTITUDE_OLD: is_attitude_unknown(s, config),
-        Reason.HEARD_WITH_BREAKS: not holds(HEARD, progress.held, s, config),
-    }
-    first = next((Cause(reason) for reason, holds_now in known.items() if holds_now), None)
-    first = first or why_unplaced(s)
-    if first is None and progress.cause.reason in _LASTING:
-        first = progress.cause
-    if first is None and is_out_of_range(s, config):
-        first = Cause(Reason.TOO_FAR_FROM_START)
-    first = first or obstacle(progress.held, s, config)
-    is_last = progress.interrupted_ns is None and progress.retries >= config.abort.retries_max
-    return Cause(Reason.NO_RETRY_LEFT) if first is None and is_last else first

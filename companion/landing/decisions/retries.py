@@ -1,0 +1,49 @@
+"""Decides how a climb after an abort ends: with another approach, or with a hold and what forbids one."""
+
+from companion.config.companion import CompanionConfig
+from companion.core.reasons import Cause, Reason
+from companion.landing.decisions.aborts import is_out_of_range, why_unplaced
+from companion.landing.decisions.conditions import HEARD, holds, is_attitude_unknown, is_fix_old
+from companion.landing.decisions.entries import Decision
+from companion.landing.decisions.feasibility import obstacle
+from companion.landing.state.memory import Progress
+from companion.situation.phases import Event
+from companion.situation.situation import Situation
+
+_LASTING = (Reason.OFFSET_UNKNOWN, Reason.SEEN_ELSEWHERE, Reason.SIGHTINGS_DISAGREE)
+"""What the drone looked with the first time is all that it has to look with."""
+
+
+def end_climb(progress: Progress, s: Situation, config: CompanionConfig) -> Decision | None:
+    """Return the event that ends a climb after an abort, None while it goes on."""
+    in_phase_s = (s.monotonic_ns - progress.since_ns) * 1e-9
+    high = s.approach is not None and s.approach.height_m > 0.8 * config.abort.height_m
+    ready = high and holds(HEARD, progress.held, s, config)
+    if not ready and in_phase_s < config.abort.time_limit_s:
+        return None
+    why_not = _no_retry(progress, s, config)
+    if why_not is not None:
+        return Event.CLEAR_TO_HOLD, why_not
+    if progress.interrupted_ns is not None:
+        return Event.CLEAR, Cause(Reason.HEARD_AGAIN)
+    return Event.CLEAR, Cause(Reason.RETRY, (progress.retries + 1, config.abort.retries_max))
+
+
+def _no_retry(progress: Progress, s: Situation, config: CompanionConfig) -> Cause | None:
+    """Return why no other approach is made, the first of all causes; None when one is."""
+    known = {
+        Reason.BROKEN_OFF: not progress.may_retry,
+        Reason.NO_VEHICLE_DATA: is_fix_old(s, config),
+        Reason.OWN_POSITION_OLD: s.drone is None,
+        Reason.OWN_ATTITUDE_OLD: is_attitude_unknown(s, config),
+        Reason.HEARD_WITH_BREAKS: not holds(HEARD, progress.held, s, config),
+    }
+    first = next((Cause(reason) for reason, holds_now in known.items() if holds_now), None)
+    first = first or why_unplaced(s)
+    if first is None and progress.cause.reason in _LASTING:
+        first = progress.cause
+    if first is None and is_out_of_range(s, config):
+        first = Cause(Reason.TOO_FAR_FROM_START)
+    first = first or obstacle(progress.held, s, config)
+    is_last = progress.interrupted_ns is None and progress.retries >= config.abort.retries_max
+    return Cause(Reason.NO_RETRY_LEFT) if first is None and is_last else first
