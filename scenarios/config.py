@@ -3,6 +3,7 @@
 Presets and tracks live as TOML in `scenarios/catalogue`; the numbers of the sensor presets are the benchmark's.
 """
 
+import math
 from typing import Annotated, Any, Literal, get_args
 
 from pydantic import Field
@@ -14,6 +15,8 @@ from scenarios.tracks.config import TrackConfig
 from sim_autopilot.runtime.config import DatumConfig, DroneConfig
 
 Share = Annotated[float, Field(ge=0.0, le=1.0)]
+Angle = Annotated[float, Field(ge=-math.pi, le=math.pi)]
+"""Mathematical, in rad; degrees are refused."""
 
 FirmwareName = Literal["px4", "ardupilot"]
 FIRMWARES: tuple[FirmwareName, ...] = get_args(FirmwareName)
@@ -136,12 +139,12 @@ class WindConfig(StrictModel):
     """Mean wind from a direction (drawn for each seed where None) and its turbulence (MIL-F-8785C)."""
 
     mean_m_s: Annotated[float, Field(ge=0.0, le=40.0)] = 0.0
-    from_rad: float | None = None  # mathematical angle, from East counter-clockwise, that the wind blows from
+    from_rad: Angle | None = None  # from East counter-clockwise, that the wind blows from
     turbulence: Literal["none", "light", "moderate", "severe"] = "none"
     turbulence_std_m_s: Annotated[float, Field(ge=0.0, le=10.0)] | None = None  # vertical; in place of the severity's
     gust_m_s: Annotated[float, Field(ge=0.0, le=40.0)] = 0.0  # peak of one 1-cosine gust from a drawn direction
     gust_duration_s: Positive = 3.0  # from calm to calm; in 5 m/s of airspeed it rises over d_m = 7.5 m
-    gust_from_rad: float | None = None  # drawn for each seed where None
+    gust_from_rad: Angle | None = None  # drawn for each seed where None
     gust_at_s: NotNegative | None = None  # since the start; within the scenario's `disturbed_between_s` where None
 
 
