@@ -96,10 +96,15 @@ def strays(s: Situation, c: CompanionConfig) -> bool:
 
 
 def _can_turn_back(s: Situation, c: CompanionConfig) -> bool:
-    """Return whether a drone that breaks off now stops sinking above the pad: after its lag and with what it climbs."""
-    if s.approach is None or s.limits is None or s.approach.height_m < c.descent.sway.height_min_m:
+    """Return whether a drone that breaks off now stops sinking above the pad: after its lag and with what it climbs.
+
+    One that is lower than its height errs and does not sink may stand already.
+    """
+    if s.approach is None or s.limits is None:
         return False
     sinks_m_s = max(-s.approach.climb_m_s, 0.0)
+    if s.approach.height_m < c.descent.sway.height_min_m and sinks_m_s < c.touchdown.blocked_speed_m_s:
+        return False
     lag_s = ATTITUDE_LAG_S + s.following.late_s
     stops_m = sinks_m_s * lag_s + 0.5 * sinks_m_s**2 / s.limits.vertical_acceleration_max_m_s2
     return s.approach.height_m > stops_m

@@ -1,4 +1,4 @@
-"""The forecast of the contact that a descent leads to if it goes on, made ten to twenty times a second; pure."""
+"""The forecast of the contact that a descent leads to if it goes on, made ten times a second or more; pure."""
 
 import math
 
@@ -28,8 +28,7 @@ from companion.situation.situation import Situation, vehicle_stands
 from link.messages import ContactForecast
 from link.records import replace
 
-_PERIOD_S = 0.1  # between two of them: above the commit height nothing has to be decided sooner
-_COMMITTED_PERIOD_S = 0.05  # below, where a brake that is seen then leaves 0.4 s to stop sinking
+_PERIOD_S = 0.1  # between two of them above the commit height; below it each step that knows of a brake counts
 _AGE_MAX_S = 1.0  # of data, beyond which the landing is broken off anyway
 
 
@@ -40,8 +39,7 @@ def update_forecast(memory: StepMemory, situation: Situation, inputs: StepInputs
         return replace(memory, forecast=replace(known, contact=None, made_ns=None, is_committed=False, has_begun=False))
     relative = situation.approach
     is_low = relative is not None and relative.height_m < system.config.descent.commit_height_m
-    period_ns = round((_COMMITTED_PERIOD_S if is_low else _PERIOD_S) * 1e9)
-    if known.made_ns is not None and now_ns - known.made_ns < period_ns:
+    if not is_low and known.made_ns is not None and now_ns - known.made_ns < round(_PERIOD_S * 1e9):
         return replace(memory, forecast=known)
     memory = replace(memory, forecast=replace(known, made_ns=now_ns, is_committed=is_low))
     contact = forecast_contact(memory, situation, inputs, system)

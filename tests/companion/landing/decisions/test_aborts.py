@@ -150,8 +150,9 @@ MOST = CONFIG.descent.risk.turns_back_min
         (risky(LOW_M, 0.45, unsafe=0.0, broken_off=0.45), False),
         (risky(LOW_M, 0.45, unsafe=0.0, broken_off=0.55), True),
         (risky(CONFIG.descent.commit_height_m + 0.01, 0.45), False),  # it may wait
-        (risky(max(STOPPING_M, CONFIG.descent.sway.height_min_m) + 0.01, 0.45), True),
-        (risky(CONFIG.descent.sway.height_min_m - 0.01), False),  # it may stand already
+        (risky(STOPPING_M + 0.01, 0.45), True),
+        (risky(STOPPING_M - 0.01, 0.45), False),
+        (risky(CONFIG.descent.sway.height_min_m - 0.01, 0.1), False),  # it may stand already
         (risky(0.2, 1.0), False),
         (risky(0.3, 1.0), True),
         (changed(risky(0.3, 1.0), late_s=0.1), False),  # the command would come too late
