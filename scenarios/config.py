@@ -10,7 +10,7 @@ from pydantic import Field
 
 from companion.config.companion import CompanionConfig
 from link.messages import PadGeometry, Vector3
-from link.program.toml_config import NotNegative, Positive, StrictModel
+from link.program.toml_config import Ascending, NotNegative, Positive, Range, StrictModel
 from scenarios.tracks.config import TrackConfig
 from sim_autopilot.runtime.config import DatumConfig, DroneConfig
 
@@ -68,7 +68,7 @@ class PatternConfig(DelayConfig):
     range_min_m: NotNegative = 0.3
     range_max_m: Positive = 12.0
     half_field_of_view_rad: Annotated[float, Field(gt=0.0, lt=1.5708)] = 0.6981  # 40 degrees
-    dropout_share_range: tuple[Share, Share] = (0.0, 0.0)  # drawn for each seed: of the time without sightings
+    dropout_share_range: Annotated[tuple[Share, Share], Ascending] = (0.0, 0.0)  # without sightings; drawn
     dropout_mean_s: Positive = 0.5  # length of one dropout
 
 
@@ -83,7 +83,7 @@ class CameraConfig(DelayConfig):
     delay_s: NotNegative = 0.06
     daylight_lx: Annotated[float, Field(ge=0.0, le=150_000.0)] = 0.0  # on level ground
     lamp_lm: Annotated[float, Field(ge=0.0, le=50_000.0)] = 0.0  # beside the camera, in a cone of 90 degrees
-    sun_elevation_range_rad: tuple[float, float] | None = None  # drawn for each seed; None: overcast, or after sunset
+    sun_elevation_range_rad: Annotated[tuple[float, float], Ascending] | None = None  # drawn; None: overcast, or night
     is_glossy: bool = False  # the board mirrors the sun
     dirt_share: Annotated[float, Field(ge=0.0, le=0.5)] = 0.0  # of the board, covered by mud and droppings
     readout_s: Annotated[float, Field(ge=0.0, le=0.1)] = 0.0  # from the first row to the last; 0: a global shutter
@@ -108,7 +108,7 @@ class OwnStateConfig(StrictModel):
     position_std_m: NotNegative = 0.0  # on each axis, as are the velocity's
     height_std_m: NotNegative | None = None  # of the height; None: as on the others
     velocity_std_m_s: NotNegative = 0.0
-    origin_step_range_m: tuple[NotNegative, NotNegative] = (0.0, 0.0)  # one step of its origin in flight, drawn
+    origin_step_range_m: Range = (0.0, 0.0)  # one step of its origin in flight, drawn
     origin_step_at_s: NotNegative | None = None  # since the start; within `disturbed_between_s` where None
 
 
@@ -154,7 +154,7 @@ class ChannelConfig(StrictModel):
     delay_s: NotNegative = 0.0
     jitter_s: NotNegative = 0.0
     loss: Share = 0.0
-    outage_range_s: tuple[NotNegative, NotNegative] = (0.0, 0.0)  # length of one outage, drawn
+    outage_range_s: Range = (0.0, 0.0)  # length of one outage, drawn
     outage_at_s: NotNegative | None = None  # since the start; within the scenario's `disturbed_between_s` where None
 
 
@@ -213,7 +213,7 @@ class RunConfig(StrictModel):
     waiting_point_enu_m: Vector3 = (0.0, 0.0, 5.0)  # 5 m above the road; source report, section "Task"
     fence_radius_m: Positive = 3000.0  # horizontal, about the datum
     time_limit_s: Positive = 120.0
-    disturbed_between_s: tuple[NotNegative, NotNegative] = (12.0, 20.0)  # a gust, outage or origin step begins; drawn
+    disturbed_between_s: Range = (12.0, 20.0)  # a gust, outage or origin step begins; drawn
 
 
 class Scenario(StrictModel):

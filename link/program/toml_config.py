@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Annotated, Any, TypeVar
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError
 
 from link.errors import UserError
 from link.program.config_mistakes import Location, report
@@ -15,6 +15,17 @@ from link.program.text import read_text
 Positive = Annotated[float, Field(gt=0.0, le=1e4)]
 NotNegative = Annotated[float, Field(ge=0.0, le=1e4)]
 """A length, time or speed beyond this was meant in another unit."""
+
+
+def _ascending(bounds: tuple[float, float]) -> tuple[float, float]:
+    if bounds[0] > bounds[1]:
+        raise ValueError("the first number must not be more than the second")
+    return bounds
+
+
+Ascending = AfterValidator(_ascending)
+Range = Annotated[tuple[NotNegative, NotNegative], Ascending]
+"""The least and the most of something."""
 
 
 class StrictModel(BaseModel):

@@ -8,7 +8,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from link.program.toml_config import NotNegative, Positive, StrictModel
+from link.program.toml_config import Ascending, NotNegative, Positive, StrictModel
 from scenarios.tracks.drive_config import Departure, DriveTrack, VesselTrack, Waypoint
 
 
@@ -114,7 +114,7 @@ class BrakeTrack(MovingTrack):
 
     kind: Literal["brake"]
     deceleration_m_s2: Positive = 6.0
-    brake_height_range_m: tuple[Positive, Positive] = (0.4, 1.6)
+    brake_height_range_m: Annotated[tuple[Positive, Positive], Ascending] = (0.4, 1.6)
 
 
 class RandomTrack(MovingTrack):

@@ -5,10 +5,12 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from link.program.toml_config import NotNegative, Positive, StrictModel
+from link.program.toml_config import Ascending, NotNegative, Positive, StrictModel
 
 Waypoint = tuple[float, float]
 """East and north in W, m."""
+Curvature = Annotated[float, Field(ge=-10.0, le=10.0)]
+"""1/m, positive to the left; beyond it a vehicle turns on the spot."""
 
 
 class Departure(StrictModel):
@@ -50,7 +52,7 @@ class DriveTrack(StrictModel):
     begins_m: Waypoint  # of the road, in W
     heading_rad: float = 0.0  # there
     # Of each stretch its length (m), and its curvature (1/m, positive to the left) at its beginning and at its end.
-    stretches: Annotated[tuple[tuple[Positive, float, float], ...], Field(min_length=1)]
+    stretches: Annotated[tuple[tuple[Positive, Curvature, Curvature], ...], Field(min_length=1)]
     # Lane changes and swerves: place (m), length (m), and how far to the left (m).
     shifts: tuple[tuple[NotNegative, Positive, float], ...] = ()
     grades: tuple[tuple[NotNegative, float], ...] = ()  # place (m) and grade; between two places it changes evenly
@@ -101,7 +103,7 @@ class VesselTrack(StrictModel):
     departure: Departure = Departure()
     significant_height_m: Positive
     modal_period_s: Positive
-    speed_range_m_s: tuple[Positive, Positive] = (1.0, 8.0)  # drawn for each seed
+    speed_range_m_s: Annotated[tuple[Positive, Positive], Ascending] = (1.0, 8.0)  # drawn for each seed
     off_bow_max_rad: Annotated[float, Field(ge=0.0, le=1.5708)] = 0.7854  # where waves come from, drawn; 45 degrees
     deck_forward_m: float = -57.0  # of amidships; the flight deck of DTMB 5415's class is right aft
     acceleration_m_s2: Positive = 0.5

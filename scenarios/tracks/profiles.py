@@ -9,6 +9,8 @@ from collections.abc import Sequence
 
 from msgspec import Struct
 
+from link.errors import UserError
+
 
 class Leg(Struct, frozen=True, kw_only=True):
     """A time of constant acceleration that starts at `t_s` at `s_m` with `speed_m_s`."""
@@ -109,10 +111,13 @@ def cruise_steps(
     """Return the steps that speed up to `speed_m_s`, keep it, and stand `distance_m` after the start.
 
     Raises:
-        ValueError: the distance is too short to reach the speed and stop again.
+        UserError: the distance is too short to reach the speed and stop again.
     """
     speed_up_s, brake_s = speed_m_s / acceleration_m_s2, speed_m_s / braking_m_s2
     cruise_m = distance_m - 0.5 * speed_m_s * (speed_up_s + brake_s)
     if cruise_m < 0.0:
-        raise ValueError(f"{distance_m} m are too short to reach {speed_m_s} m/s and stop")
+        raise UserError(
+            f"the road of {distance_m:g} m is too short to reach {speed_m_s:g} m/s and to stop again:"
+            " raise track.road_min_m, or lower track.speed_m_s"
+        )
     return [(speed_up_s, acceleration_m_s2), (cruise_m / speed_m_s, 0.0), (brake_s, -braking_m_s2)]

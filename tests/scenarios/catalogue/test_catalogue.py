@@ -181,6 +181,14 @@ def test_file_with_a_base_changes_what_it_names(tmp_path: Path) -> None:
         ('base = "straight_5"\n[track]\nspeed_km_h = 20.0\n', ["speed_km_h"]),
         ('base = "straight_5"\n[track]\nspeed_m_s = -1.0\n', ["speed_m_s", "-1.0"]),
         ('base = "straight_5"\n[wind]\nfrom_rad = 270.0\n', ["from_rad", "less than or equal to 3.14"]),
+        (
+            'base = "brake_7"\n[track]\nbrake_height_range_m = [2.0, 0.5]\n',
+            ["brake_height_range_m", "the first number"],
+        ),
+        (
+            'base = "straight_5"\n[track]\nroad_min_m = 10.0\nroad_s = 1.0\nspeed_m_s = 30.0\n',
+            ["too short", "road_min_m"],
+        ),
         ('base = "straight"\n', ["'straight'", "'straight_"]),
         ('description = "no track"\n', ["track"]),
         ("speed = = 3\n", ["not valid TOML"]),
