@@ -33,6 +33,7 @@ from link.messages import Quaternion, Vector3
 from link.program.text import printable
 from link.records import replace
 
+_LATE_MAX_MS = HISTORY_NS // 1_000_000  # what is older says that the clock was set back
 _AHEAD_NS = 100_000_000  # how far a report is carried beyond the newest one
 
 
@@ -136,7 +137,9 @@ def _said(state: AutopilotState, message: Message, driver: Driver) -> AutopilotS
 def _position(state: AutopilotState, message: Message, clock: ClockMap) -> AutopilotState:
     t_ns = clock.boot_to_utc_ns(message.time_boot_ms * 1_000_000)
     values = (message.x, message.y, message.z, message.vx, message.vy, message.vz)
-    if t_ns is None or state.orientation_wxyz is None or not is_plausible(values[:3], values[3:]):
+    if t_ns is None or not message.time_boot_ms or state.orientation_wxyz is None:
+        return state
+    if not is_plausible(values[:3], values[3:]):
         return state
     position, reported = enu_from_ned(values[:3]), enu_from_ned(values[3:])
     bias = velocity_bias(state.own, t_ns, position, reported)
@@ -172,6 +175,8 @@ def _attitude(state: AutopilotState, message: Message) -> AutopilotState:
     rates = (message.rollspeed, message.pitchspeed, message.yawspeed)
     if not all(map(isfinite, (*q, *rates))) or sum(part * part for part in q) < 0.5:
         return state
+    if 0 <= state.attitude_boot_ms - message.time_boot_ms <= _LATE_MAX_MS or not message.time_boot_ms:
+        return state  # a newer one has come already, or nobody knows when it was
     orientation = normalized(quaternion_enu_flu_from_ned_frd(q))
     return replace(
         state,

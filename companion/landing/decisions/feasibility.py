@@ -12,6 +12,7 @@ from companion.integrity.heights import road_above_ground_m, road_distance_m
 from companion.integrity.vehicle_data import contradicts_itself
 from companion.landing.decisions.aborts import is_stamped_ahead
 from companion.landing.decisions.conditions import (
+    AUTOPILOT_SILENT,
     Condition,
     first_cause,
     is_fix_old,
@@ -23,6 +24,7 @@ from companion.landing.steering.following_height import chase_floor_m, vague_hei
 from companion.situation.phases import Phase
 from companion.situation.situation import Situation
 from companion.vehicle.pad_reach import is_too_small
+from link.records import replace
 
 SPEED_SHARE_MIN = 1.15
 """Of the vehicle's speed: with less there is nothing to catch up with, and no landing is begun."""
@@ -200,6 +202,7 @@ OBSTACLES = (
     Condition(
         reason=Reason.MEASUREMENTS_REJECTED, phases=_BEFORE_ANY_CHASE, is_true=contradicts_itself, cause=_tell_rejected
     ),
+    *(replace(silence, phases=frozenset({Phase.WAITING})) for silence in AUTOPILOT_SILENT),
     EMPTY,
     Condition(reason=Reason.PAD_TOO_SMALL, phases=_BEFORE_ANY_CHASE, is_true=_is_too_narrow, cause=_too_narrow),
     Condition(

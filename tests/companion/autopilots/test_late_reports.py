@@ -15,6 +15,13 @@ def report(number: int, mode: int = 4) -> Message:
     return message
 
 
+def landed_state(number: int) -> Message:
+    message = mavlink.MAVLink_extended_sys_state_message(0, mavlink.MAV_LANDED_STATE_IN_AIR)
+    message.pack(mavlink.MAVLink(None))
+    message.get_header().seq = number
+    return message
+
+
 @pytest.mark.parametrize(
     ("newest", "number", "is_late"), [(9, 8, True), (3, 250, True), (250, 3, False), (9, 9, False)]
 )
@@ -31,6 +38,22 @@ def test_sequence_that_began_anew_is_heard() -> None:
     reports.is_late(report(200), 0)
     assert not reports.is_late(report(100), SECOND_NS // 20)
     assert not reports.is_late(report(80), SECOND_NS)
+
+
+def test_second_late_report_of_a_kind_counts_whatever_number_somebody_forges() -> None:
+    reports, taken = LateReports(), 0
+    for second in range(4):
+        for tenth in range(10):
+            reports.is_late(landed_state(second + 30), second * SECOND_NS + tenth * SECOND_NS // 10)
+        taken += not reports.is_late(report(second), (second + 1) * SECOND_NS - 1)
+    assert taken == 3
+
+
+def test_report_that_is_late_now_and_then_is_passed_over_each_time() -> None:
+    reports = LateReports()
+    for number in range(0, 40, 4):
+        assert not reports.is_late(report(number + 1), number * SECOND_NS)
+        assert reports.is_late(report(number), number * SECOND_NS + SECOND_NS // 20)
 
 
 def test_what_tells_no_state_is_never_late() -> None:

@@ -37,6 +37,11 @@ def _at(after_ms: int, place_ned_m: Vector3, velocity_ned_m_s: Vector3 = (0.0, 0
     return mavlink.MAVLink_local_position_ned_message(BOOT_MS + after_ms, *place_ned_m, *velocity_ned_m_s)
 
 
+def _leaning(boot_ms: int, roll_rad: float) -> Message:
+    w, x = math.cos(0.5 * roll_rad), math.sin(0.5 * roll_rad)
+    return mavlink.MAVLink_attitude_quaternion_message(boot_ms, w, x, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
 def _origin(latitude_1e7: int, longitude_1e7: int, altitude_mm: int) -> Message:
     return mavlink.MAVLink_gps_global_origin_message(latitude_1e7, longitude_1e7, altitude_mm)
 
@@ -69,6 +74,18 @@ def test_age_of_the_attitude_is_told_with_each_position() -> None:
     newer = mavlink.MAVLink_attitude_quaternion_message(BOOT_MS + 715, 1.0, 0.0, 0.0, 0.0, 0.1, 0.2, 0.3)
     (*_, newest) = _hear(newer, _at(710, (0.4, 0.0, 0.0)), state=state).history
     assert newest.attitude_age_s == 0.0
+
+
+@pytest.mark.parametrize("late_ms", [0, 20, 500, 1000])
+def test_late_and_doubled_attitudes_are_passed_over(late_ms: int) -> None:
+    state = _hear(_leaning(BOOT_MS + 1000, 0.1), _leaning(BOOT_MS + 1000 - late_ms, 0.9))
+    assert state == _hear(_leaning(BOOT_MS + 1000, 0.1))
+    assert _hear(_leaning(BOOT_MS - 5000, 0.9), state=state) != state
+
+
+def test_attitude_and_place_without_a_stamp_say_nothing() -> None:
+    state = _hear(LEVEL, _at(0, (0.0, 0.0, 0.0)))
+    assert _hear(_leaning(0, 0.9), _at(-BOOT_MS, (9.0, 0.0, 0.0)), state=state) == state
 
 
 def test_late_and_doubled_positions_are_passed_over() -> None:

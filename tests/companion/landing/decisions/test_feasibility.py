@@ -6,7 +6,7 @@ import pytest
 
 from companion.config.companion import CompanionConfig
 from companion.core.data import Array, Forecast
-from companion.core.reasons import Reason
+from companion.core.reasons import Cause, Reason, sentence
 from companion.landing.decisions.aborts import ABORTS
 from companion.landing.decisions.feasibility import OBSTACLES
 from companion.landing.steering.following_height import chase_floor_m
@@ -87,6 +87,19 @@ def test_vehicle_out_of_reach_is_told_once_and_let_go(
     assert Phase.CHASE not in flight.history
     assert len([one.text for one in outputs if one.text is not None and told in one.text]) == 1
     assert told in outputs[100].status.reason
+
+
+def test_waiting_drone_that_does_not_know_where_it_is_says_so_and_goes_on_once_it_does() -> None:
+    flight = Flight(vehicle=replace(FAST, start_enu_m=(-200.0, 0.4, PAD_HEIGHT_M)))
+    flight.sends_fixes = False
+    flight.start_and_reach(Phase.WAITING)
+    flight.own_is_silent = True
+    *_, lost = flight.run(CONFIG.abort.own_age_max_s + 0.2)
+    assert flight.phase is Phase.WAITING
+    assert lost.status.reason == sentence(Cause(Reason.OWN_POSITION_OLD))
+    flight.own_is_silent = False
+    *_, found = flight.run(0.2)
+    assert found.status.reason != lost.status.reason
 
 
 def test_vehicle_that_slows_down_is_chased_after_all() -> None:
