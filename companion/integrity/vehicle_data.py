@@ -158,7 +158,7 @@ def update_course(
     )
     slip_rad = max(_CAR_M, pad.mounting.arm_m) * abs(vx * ay - vy * ax) / speed_m_s**3
     unsure_rad = _COURSE_STDS * speed_std_m_s / speed_m_s
-    return watch if compared_s < _COURSE_OVER_S else _judge(watch, _off_max_rad(pad, config) + slip_rad + unsure_rad)
+    return watch if compared_s < _COURSE_OVER_S else _judge(watch, _off_max_rad(pad, config) + unsure_rad, slip_rad)
 
 
 def _off_max_rad(pad: PadPath, config: CompanionConfig) -> float:
@@ -173,9 +173,10 @@ def _off_max_rad(pad: PadPath, config: CompanionConfig) -> float:
     return min(most_rad, cone_radius_at_pad_m(pad.half_width_m, config) / mounting.arm_m)
 
 
-def _judge(watch: CourseWatch, off_max_rad: float) -> CourseWatch:
+def _judge(watch: CourseWatch, off_max_rad: float, slip_rad: float) -> CourseWatch:
+    """Return the watch after a comparison: a bend's slip excuses a heading, but shows none to be right after all."""
     off_rad = abs(math.atan2(watch.off_sin, watch.off_cos))
-    within_rad = off_max_rad if watch.off_rad is None else _BACK_WITHIN * off_max_rad
+    within_rad = off_max_rad + slip_rad if watch.off_rad is None else _BACK_WITHIN * off_max_rad
     if off_rad <= within_rad:
         is_known = watch.has_agreed and not watch.has_stopped and watch.off_rad is None
         return watch if is_known else replace(watch, has_agreed=True, has_stopped=False, off_rad=None)

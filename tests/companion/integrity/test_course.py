@@ -181,6 +181,12 @@ def test_heading_that_was_off_is_believed_again_well_within_the_limit(turned_rad
         assert (watch.off_rad is not None) is is_still_off
 
 
+def test_bend_shows_no_heading_to_be_right_that_a_straight_has_contradicted() -> None:
+    off = course_after(CourseWatch(), driving(LIMIT_RAD + 0.05))
+    assert course_after(off, driving(LIMIT_RAD + 0.05, lateral_m_s2=4.0), 20.0).off_rad is not None
+    assert course_after(off, driving(0.5 * LIMIT_RAD, lateral_m_s2=4.0), 20.0).off_rad is None
+
+
 def test_vehicle_that_drives_on_does_not_begin_to_reverse_without_a_stop() -> None:
     agreed = course_after(CourseWatch(), driving(0.0))
     assert course_after(agreed, driving(math.pi)).off_rad is not None
