@@ -151,6 +151,9 @@ def _range_finder(seen: AutopilotFacts) -> Finding:
 _FIX_RATE_MIN_HZ = 4.0
 _FIX_AGE_SHARE = 0.5  # of what aborts a landing
 _FIX_STD_GOOD_M = 0.3
+# At 3 m/s an antenna farther behind leaves the pad unknown by 0.3 m, S2's limit: a heading by sqrt(2 L^3 q / v^5), with
+# q = 0.1 m^2/s^5 for how unsteadily a car is steered (docs/notebook.md).
+_BEHIND_MAX_M = 2.5
 
 
 def assess_vehicle(seen: VehicleFacts, config: CompanionConfig, *, is_expected: bool = False) -> list[Finding]:
@@ -184,7 +187,11 @@ def assess_vehicle(seen: VehicleFacts, config: CompanionConfig, *, is_expected: 
 
 
 def _heading(seen: VehicleFacts, config: IntegrityConfig) -> list[Finding]:
-    """Return the line on a heading that was compared with the course: of a vehicle that drove meanwhile."""
+    """Return the line on a heading that was compared with the course, or that is missed."""
+    if not seen.tells_heading and seen.antenna_behind_pad_m > _BEHIND_MAX_M:
+        text = f"none, with the antenna {seen.antenna_behind_pad_m:.1f} m behind the pad"
+        advice = "send a heading, or put the antenna ahead of the pad"
+        return [make_finding("vehicle heading", text, Level.WARN, advice, "its own course hardly shows how it turns")]
     if seen.heading_off_rad is None:
         return []
     level = pass_or(abs(seen.heading_off_rad) <= config.heading_off_max_rad, Level.FAIL)

@@ -57,6 +57,8 @@ class VehicleFacts:
         has_velocity: it sends its velocity as well.
         describes_pad: it answered for its pad.
         pad_refused_why: what was wrong with an answer, None where nothing was.
+        antenna_behind_pad_m: by which the antenna is behind the pad's middle, as the vehicle describes it; 0 before.
+        tells_heading: it does.
         heading_off_rad: mean angle from its course to its heading while it drove; None when it stood or told none.
     """
 
@@ -68,6 +70,8 @@ class VehicleFacts:
     has_velocity: bool = False
     describes_pad: bool = False
     pad_refused_why: str | None = None
+    antenna_behind_pad_m: float = 0.0
+    tells_heading: bool = False
     heading_off_rad: float | None = None
 
 

@@ -91,5 +91,7 @@ class VehicleReader:
             has_velocity=self._has_velocity,
             describes_pad=pad.is_answered,
             pad_refused_why=pad.refused_why,
+            antenna_behind_pad_m=0.0 if pad.pad is None else pad.pad.antenna_to_pad_m[0],
+            tells_heading=self._heading is not None,
             heading_off_rad=cmath.phase(sum(self._offs)) if len(self._offs) >= _COMPARED_MIN else None,
         )

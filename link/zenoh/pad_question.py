@@ -30,6 +30,7 @@ class PadQuestion:
         key: of the pad.
 
     Attributes:
+        pad: that came last, None before one has come.
         is_answered: whether a pad has come, since it was last asked again.
         bad_answers: that were no description of a pad, or not to be believed.
         refused_why: what was wrong with the last one of them, None while there was none.
@@ -40,7 +41,7 @@ class PadQuestion:
         self._key = key
         self._answers: Inbox | None = None
         self._gathered: list[PadGeometry] = []
-        self._pad: PadGeometry | None = None
+        self.pad: PadGeometry | None = None
         self._asked_s = float("-inf")
         self.is_answered = False
         self.bad_answers = 0
@@ -80,10 +81,10 @@ class PadQuestion:
         if any(other != first for other in others):
             self._refuse(f"{len(others) + 1} answers that differ: two answer on {self._key}")
             return None
-        if not may_change and self._pad not in {None, first}:
+        if not may_change and self.pad not in {None, first}:
             self._refuse(_CHANGED)
             return None
-        self._pad, self.is_answered = first, True
+        self.pad, self.is_answered = first, True
         return first
 
     def _refuse(self, why: str) -> None:

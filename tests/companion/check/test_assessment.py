@@ -126,6 +126,7 @@ def test_what_the_companion_would_not_fly_fails_by_its_type(vehicle_type: int) -
         ({"age_s": None}, "vehicle age", Level.WARN),
         ({"heading_off_rad": math.pi}, "vehicle heading", Level.FAIL),
         ({"heading_off_rad": -0.3}, "vehicle heading", Level.FAIL),
+        ({"antenna_behind_pad_m": 2.6}, "vehicle heading", Level.WARN),
         ({"std_m": 1.0}, "vehicle accuracy", Level.WARN),
         ({"std_m": 5.0}, "vehicle accuracy", Level.FAIL),
         ({"std_m": None}, "vehicle accuracy", Level.WARN),
@@ -159,6 +160,18 @@ def test_silent_vehicle_fails_where_it_was_said_where_it_is_met() -> None:
 )
 def test_endpoints_say_where_a_vehicle_is_met(given: dict[str, Any], *, are_given: bool) -> None:
     assert ZenohArguments(**given).are_given is are_given
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [
+        {"antenna_behind_pad_m": 2.4},
+        {"antenna_behind_pad_m": -6.0},
+        {"antenna_behind_pad_m": 6.0, "tells_heading": True},
+    ],
+)
+def test_course_shows_the_heading_unless_the_antenna_is_far_behind_the_pad(changed: dict[str, Any]) -> None:
+    assert "vehicle heading" not in {one.name for one in assess(GOOD, replace(VEHICLE, **changed), 10.0, CONFIG)}
 
 
 def test_heading_that_follows_the_course_passes() -> None:

@@ -119,6 +119,7 @@ def listened(monkeypatch: pytest.MonkeyPatch, world: World, duration_s: float) -
 def test_pad_is_asked_for_until_the_vehicle_has_heard_the_question(monkeypatch: pytest.MonkeyPatch) -> None:
     facts, took_s = listened(monkeypatch, World(heard_from=2), 4.0)
     assert facts.describes_pad
+    assert facts.antenna_behind_pad_m == PAD.antenna_to_pad_m[0]
     assert took_s == pytest.approx(4.0, abs=0.1)
 
 

@@ -47,6 +47,7 @@ def _after_a_drive(
 def test_heading_is_compared_with_the_course_of_a_vehicle_that_drives(course_rad: float, off_rad: float) -> None:
     facts = _after_a_drive(course_rad, off_rad, 4.0).facts(NOT_ASKED)
     assert facts.has_velocity
+    assert facts.tells_heading
     assert facts.heading_off_rad == pytest.approx(off_rad, abs=1e-6)
 
 
