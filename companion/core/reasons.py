@@ -80,6 +80,7 @@ class Reason(Enum):
     TOO_FAR_FROM_START = "too far from the start"
     BELOW_PAD = "below the pad without contact"
     NOTHING_TOUCHED = "nothing touched"
+    ROAD_BELOW = "range finder sees the road where the pad should be"
     STRAYS = "not over the pad in time"
     ALIGNMENT_LOST = "alignment lost"
     PAD_TO_BE_SEEN = "pad to be seen again"

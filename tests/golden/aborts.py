@@ -26,10 +26,10 @@ _ANTENNA_OVER_PAD = {"antenna_flu_m": (0.0, 0.0, 1.6)}  # no heading is needed t
 _RAISED_M = 3.0
 _WRONG_M = 1.2  # more than what a range finder sees may be off the height of a pad that is told wrong
 _BESIDE_M = 0.4
+_OVER_EDGE_M = 2.25  # from the middle of a roof of 4.2 m: what looks down sees the road, and a foot is on the roof
 _COMMITTED_M = 0.4  # of the drone above the roof: its feet are 0.28 m above
 _AHEAD_S = 0.3
 _LIMIT_M_S = 4.0  # less than the vehicle's 5 m/s
-_PATIENCE_S = 6.0  # from the fault to the abort
 _CLIMB_S = 12.0  # a little more than the abort's own time limit
 _AFTER_S = 3.0  # to brake, and to be seen airborne and stable
 
@@ -47,6 +47,8 @@ class Abort:
         vehicle: likewise, of the vehicle.
         phase: in which the fault happens.
         fault: what goes wrong, None where a setting alone breaks the flight off.
+        within_s: from the fault to the abort.
+        touches: the vehicle is touched before.
     """
 
     reason: Reason
@@ -55,6 +57,8 @@ class Abort:
     vehicle: Mapping[str, Any] = field(default_factory=dict)
     phase: Phase = Phase.DESCEND
     fault: Fault | None = None
+    within_s: float = 6.0
+    touches: bool = False
 
 
 def fly(abort: Abort) -> FaultFlight:
@@ -68,7 +72,7 @@ def fly(abort: Abort) -> FaultFlight:
         abort.fault(flight)
     else:
         flight.fly_to(Phase.CHASE)
-    _fly_until(flight, Phase.ABORT, _PATIENCE_S)
+    _fly_until(flight, Phase.ABORT, abort.within_s)
     _fly_until(flight, Phase.HOLD, _CLIMB_S)
     flight.fly(_AFTER_S)
     return flight
@@ -98,8 +102,8 @@ def _stream_stops(flight: FaultFlight, number: int) -> None:
     flight.tell(mavlink.MAVLink_command_long_message(1, 1, interval, 0, number, -1.0, 0, 0, 0, 0, 0))
 
 
-def _vehicles_clock_is_set(flight: FaultFlight) -> None:
-    flight.simulation.vehicle.set_clock(_AHEAD_S)
+def _vehicles_clock_is_set(ahead_s: float) -> Fault:
+    return lambda flight: flight.simulation.vehicle.set_clock(ahead_s)
 
 
 def _limit_is_lowered(flight: FaultFlight) -> None:
@@ -148,7 +152,7 @@ ABORTS: dict[str, Abort] = {
         reason=Reason.VEHICLE_CLOCK_AHEAD,
         companion={"descent": _LONG_ALIGNMENT},
         phase=Phase.ALIGN,
-        fault=_vehicles_clock_is_set,
+        fault=_vehicles_clock_is_set(_AHEAD_S),
     ),
     "heading_unknown": Abort(
         reason=Reason.HEADING_UNKNOWN,
@@ -174,6 +178,14 @@ ABORTS: dict[str, Abort] = {
     "outrun": Abort(reason=Reason.VEHICLE_OUTRUNS, phase=Phase.ALIGN, fault=_limit_is_lowered),
     "below_pad": Abort(reason=Reason.BELOW_PAD, fault=_pad_is_described(forward_m=0.0, up_m=_RAISED_M)),
     "nothing_touched": Abort(reason=Reason.NOTHING_TOUCHED, fault=_pad_is_described(forward_m=0.0, up_m=_WRONG_M)),
+    "road_below": Abort(
+        reason=Reason.ROAD_BELOW,
+        scenario="straight_15",
+        phase=Phase.CHASE,
+        fault=_vehicles_clock_is_set(-_OVER_EDGE_M / 15.0),
+        within_s=20.0,
+        touches=True,
+    ),
     "offset_unknown": Abort(
         reason=Reason.OFFSET_UNKNOWN,
         companion={"integrity": {"receiver_frames": "apart"}, "chase": {"unseen_hold_s": 2.0}},
@@ -202,6 +214,7 @@ ABORTS: dict[str, Abort] = {
         reason=Reason.ABOVE_AFTER_CONTACT,
         phase=Phase.TOUCHDOWN,
         fault=_pad_is_described(forward_m=0.0, up_m=-_RAISED_M),
+        touches=True,
     ),
     "descent_too_long": Abort(reason=Reason.DESCENT_TOO_LONG, companion={"descent": {"time_limit_s": 1.0}}),
     "operator_aborts": Abort(reason=Reason.OPERATOR_ABORTS, phase=Phase.CHASE, fault=_operator(Command.ABORT)),

@@ -127,7 +127,11 @@ def _is_in_hard_contact(s: Situation, c: CompanionConfig) -> bool:
 
 
 def _is_in_disputed_contact(s: Situation, c: CompanionConfig) -> bool:
-    return verdict(signs_of(s), c) is not Verdict.AIRBORNE
+    return verdict(signs_of(s), c) in {Verdict.CONTACT, Verdict.DISPUTED}
+
+
+def _is_at_edge(s: Situation, c: CompanionConfig) -> bool:
+    return verdict(signs_of(s), c) is Verdict.AT_EDGE
 
 
 def _is_held_up(s: Situation, c: CompanionConfig) -> bool:
@@ -195,6 +199,12 @@ MISSED = (
         phases=_DESCENT,
         is_true=_is_sunk,
         hold_s=lambda _, c: c.touchdown.lost.missed_hold_s,
+    ),
+    Condition(
+        reason=Reason.ROAD_BELOW,
+        phases=_DESCENT,
+        is_true=_is_at_edge,
+        hold_s=lambda _, c: c.touchdown.range_finder.disputed_hold_s,
     ),
 )
 """What ends a commitment to land as well: the pad is not where it is said to be."""

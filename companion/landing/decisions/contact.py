@@ -6,7 +6,8 @@ down), and the support (the setpoint has sunk below the drone, or the autopilot 
 for another fault: a wrong height of the vehicle or a stuck place is contradicted by a drone that still follows its
 setpoint, a stuck autopilot's word by the height. A drone's own height that is wrong shifts place and support in
 opposite directions. A range finder is believed when it agrees; when it sees the pad far below, all else has to agree
-for so long that a drone pressed downwards in the air would have fallen.
+for so long that a drone pressed downwards in the air would have fallen. Where it sees what can only be the road beside
+the vehicle, the drone is at an edge of it, or in the air.
 """
 
 import math
@@ -24,6 +25,7 @@ class Verdict(Enum):
 
     AIRBORNE = "airborne"
     DISPUTED = "disputed"  # a contact but for the range finder
+    AT_EDGE = "at edge"  # likewise, and the range finder sees the road beside the vehicle
     CONTACT = "contact"
 
 
@@ -39,11 +41,9 @@ def verdict(signs: Signs, config: CompanionConfig, *, is_pressed: bool = False) 
     if not (_is_at_pad(signs, config) and stands and _is_supported(signs, config.touchdown)):
         return Verdict.AIRBORNE
     seen_m = signs.range_height_m
-    return (
-        Verdict.CONTACT
-        if seen_m is None or seen_m <= config.touchdown.range_finder.contact_height_max_m
-        else Verdict.DISPUTED
-    )
+    if seen_m is None or seen_m <= config.touchdown.range_finder.contact_height_max_m:
+        return Verdict.CONTACT
+    return Verdict.AT_EDGE if _is_road(seen_m, signs, config.touchdown) else Verdict.DISPUTED
 
 
 def trial_press_m_s2(signs: Signs, late_s: float, config: TouchdownConfig) -> float:
@@ -124,8 +124,14 @@ def may_force_motors_off(
             return True
         case Verdict.DISPUTED:
             return since_contact_s >= config.touchdown.range_finder.disputed_hold_s
-        case Verdict.AIRBORNE:
+        case Verdict.AIRBORNE | Verdict.AT_EDGE:
             return False
+
+
+def _is_road(seen_m: float, signs: Signs, config: TouchdownConfig) -> bool:
+    """Return whether a range finder sees the road beside a vehicle whose roof no error takes for it."""
+    road_m, off_m = signs.road_below_m, config.range_finder.off_max_m
+    return road_m is not None and road_m > 2.0 * off_m and abs(seen_m - road_m) < off_m
 
 
 def _is_at_pad(signs: Signs, config: CompanionConfig) -> bool:

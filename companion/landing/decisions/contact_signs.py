@@ -23,6 +23,7 @@ class Signs(Struct, frozen=True, kw_only=True):
         landed: the autopilot's own word.
         pad_half_width_m: from the pad's centre to its nearest edge.
         passed_m: least horizontal distance from the pad's centre within the time that a jolt is seen for.
+        road_below_m: the road beside the vehicle, below the pad.
         sink_left_m_s: by how much its autopilot lets the drone sink faster than it does.
     """
 
@@ -36,6 +37,7 @@ class Signs(Struct, frozen=True, kw_only=True):
     range_carried_m: float | None = None
     passed_m: float | None = None
     pad_half_width_m: float = math.inf
+    road_below_m: float | None = None
     sink_left_m_s: float = math.inf
 
 
@@ -56,6 +58,7 @@ def signs_of(s: Situation) -> Signs:
         landed=s.autopilot.landed,
         range_carried_m=s.below.range_carried_m,
         pad_half_width_m=math.inf if s.pad is None else s.pad.half_width_m,
+        road_below_m=None if s.pad is None or s.pad.mounting.is_afloat else s.pad.height_m,
         passed_m=None if relative is None or drone is None else _passed_m(relative, _JOLT_S + drone.age_s),
         sink_left_m_s=math.inf
         if drone is None or s.limits is None

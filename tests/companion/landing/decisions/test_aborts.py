@@ -35,7 +35,7 @@ from tests.companion.facts import (
 from tests.companion.landing.decisions.unsafe_facts import HALF_M, HIGH_M, LIMITS, LOW_M, UNSAFE, risky
 from tests.companion.world import LANDING
 
-BLIND = (Reason.OWN_POSITION_OLD, Reason.HEADING_UNKNOWN, Reason.BELOW_PAD, Reason.NOTHING_TOUCHED)
+BLIND = (Reason.OWN_POSITION_OLD, Reason.HEADING_UNKNOWN, Reason.BELOW_PAD, Reason.NOTHING_TOUCHED, Reason.ROAD_BELOW)
 # These cannot be true of a drone that is committed: it is over the pad and hardly moves against it.
 UNFIT = {Reason.OUTSIDE_CONE, Reason.TOO_FAST_NEAR_PAD}
 # This ends a commitment.

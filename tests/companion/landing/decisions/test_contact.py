@@ -19,6 +19,7 @@ from tests.companion.world import configured
 TOUCHDOWN, DESCENT = CONFIG.touchdown, CONFIG.descent
 ABSURD = st.one_of(st.floats(-1e6, 1e6), st.sampled_from([float("nan"), float("inf"), -float("inf"), 0.0, 1e30, -1e30]))
 LONG_S = 1e3
+OFF_M = TOUCHDOWN.range_finder.off_max_m
 
 # Everything that a step's facts are made of, each as one source that may fail.
 SOURCES = (
@@ -158,6 +159,28 @@ def test_range_finder_that_sees_the_pad_far_below_puts_off_the_forced_disarm() -
     assert verdict(signs, CONFIG) is Verdict.DISPUTED
     assert not may_force_motors_off(signs, TOUCHDOWN.range_finder.disputed_hold_s - 0.01, CONFIG)
     assert may_force_motors_off(signs, TOUCHDOWN.range_finder.disputed_hold_s, CONFIG)
+
+
+@pytest.mark.parametrize(
+    ("roof_m", "seen_m", "is_afloat", "expected"),
+    [
+        (1.5, 1.43, False, Verdict.AT_EDGE),
+        (1.5, 1.5 + OFF_M - 0.01, False, Verdict.AT_EDGE),
+        (1.5, 1.5 - OFF_M - 0.01, False, Verdict.DISPUTED),
+        (1.5, 1.43, True, Verdict.DISPUTED),  # of water nothing is said
+        (2.0 * OFF_M - 0.01, 2.0 * OFF_M - 0.01, False, Verdict.DISPUTED),  # so low a pad is mistaken for its road
+        (1.5, 0.1, False, Verdict.CONTACT),
+    ],
+)
+def test_range_finder_that_sees_the_road_beside_the_vehicle_says_where_the_drone_is(
+    roof_m: float, seen_m: float, expected: Verdict, *, is_afloat: bool
+) -> None:
+    facts = changed(on_pad(), range_height_m=seen_m)
+    assert facts.pad is not None
+    pad = replace(facts.pad, height_m=roof_m, mounting=replace(facts.pad.mounting, is_afloat=is_afloat))
+    signs = signs_of(replace(facts, pad=pad))
+    assert verdict(signs, CONFIG) is expected
+    assert may_force_motors_off(signs, LONG_S, CONFIG) is (expected is not Verdict.AT_EDGE)
 
 
 @pytest.mark.parametrize(

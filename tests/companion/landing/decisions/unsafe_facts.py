@@ -14,6 +14,7 @@ from tests.companion.facts import (
     drone_at,
     forecast_of,
     pad_at,
+    reference_at,
     situation,
 )
 
@@ -67,6 +68,11 @@ UNSAFE: dict[Reason, Situation] = {
     Reason.SIGHTINGS_DISAGREE: changed(situation(), are_sightings_mixed=True),
     Reason.SEEN_TOO_NEAR: changed(situation(), range_height_m=0.5),
     Reason.BELOW_PAD: situation(-CONFIG.descent.sink.press_depth_m - CONFIG.touchdown.height_max_m - 0.01),
+    Reason.ROAD_BELOW: changed(
+        situation(0.0, pad=replace(pad_at(), height_m=1.5)),
+        reference=reference_at(-0.5 * CONFIG.descent.sink.press_depth_m),
+        range_height_m=1.5,
+    ),
     Reason.NOTHING_TOUCHED: situation(-CONFIG.touchdown.lost.missed_depth_m - 0.01),
 }
 # Below the commit height these still count: without them nobody knows where the pad is.
