@@ -17,10 +17,10 @@ from companion.landing.sortie.phases import over_deck
 from companion.landing.state.memory import ModelMemory, StepMemory, to_present_frame
 from companion.landing.state.step_data import StepInputs, StepOutputs, System
 from companion.landing.state.vehicle_update import place_by_deck, predict_pad, update_vehicle
-from companion.landing.steering.virtual_model import tracking_error_max_m, update_tracking
+from companion.landing.steering.virtual_model import Ride, tracking_error_max_m, update_ride, update_tracking
 from companion.landing.touchdown.contact_forecast import update_forecast
 from companion.landing.transitions import take_events
-from companion.situation.phases import FOLLOWING_PHASES, LANDING_PHASES, STATION_PHASES, Phase
+from companion.situation.phases import FOLLOWING_PHASES, LANDING_PHASES, NEAR_PHASES, STATION_PHASES, Phase
 from companion.situation.situation import (
     Below,
     Following,
@@ -133,6 +133,7 @@ def _situation(memory: StepMemory, pad: PadPath | None, inputs: StepInputs, syst
                 memory.model.reference, inputs.response, inputs.link_delay.std_s, system.config.abort.tracking_stds_max
             ),
             late_s=inputs.link_delay.mean_s + inputs.link_delay.std_s,
+            rides_m=memory.model.ride.above_m,
         ),
         waiting_point_enu_m=memory.places.waiting_point_enu_m,
         rival=inputs.rival,
@@ -143,7 +144,7 @@ def _situation(memory: StepMemory, pad: PadPath | None, inputs: StepInputs, syst
 
 
 def _look(memory: StepMemory, situation: Situation, pad: PadPath | None, config: CompanionConfig) -> StepMemory:
-    """Take what this step shows of the vehicle's course and of the ground."""
+    """Take what this step shows of the vehicle's course, of the ground and of how the drone flies on its setpoints."""
     phase, vehicle = memory.progress.phase, memory.vehicle
     vehicle = replace(
         vehicle,
@@ -151,7 +152,21 @@ def _look(memory: StepMemory, situation: Situation, pad: PadPath | None, config:
         is_road_elsewhere=is_road_elsewhere(vehicle.is_road_elsewhere, phase, situation, config),
     )
     places = replace(memory.places, ground_enu_m=update_ground(memory.places.ground_enu_m, phase, situation))
-    return replace(memory, vehicle=vehicle, places=places)
+    model = replace(memory.model, ride=_ride(memory, situation, config))
+    return replace(memory, vehicle=vehicle, places=places, model=model)
+
+
+def _ride(memory: StepMemory, situation: Situation, config: CompanionConfig) -> Ride:
+    """Return how high the drone flies on its setpoints; near the pad, which may hold it up, as it did before."""
+    ride, relative, reference = memory.model.ride, situation.approach, memory.model.reference
+    if memory.progress.phase not in NEAR_PHASES | {Phase.TOUCHDOWN}:
+        return Ride()
+    if relative is None or reference is None or situation.drone is None or memory.progress.phase is Phase.TOUCHDOWN:
+        return ride
+    if relative.height_m <= config.touchdown.height_max_m:
+        return ride
+    above_m = float(situation.drone.position_enu_m[2] - reference.position_enu_m[2])
+    return update_ride(ride, situation.monotonic_ns, above_m)
 
 
 def _drive(

@@ -103,12 +103,14 @@ class Following(Struct, frozen=True, kw_only=True):
         error_max_m: of one that follows them as its autopilot does in gusts over this link.
         reference: the virtual model that they follow.
         late_s: after which most have come: the link's mean delay and its standard deviation.
+        rides_m: the drone above the virtual model, as it flew when it could touch nothing.
     """
 
     error_m: float
     error_max_m: float
     reference: ReferenceState | None = None
     late_s: float = 0.0
+    rides_m: float = 0.0
 
 
 class Situation(Struct, frozen=True, kw_only=True, eq=False):

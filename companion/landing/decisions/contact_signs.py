@@ -17,7 +17,7 @@ class Signs(Struct, frozen=True, kw_only=True):
         distance_m: horizontal, from the pad's centre.
         climb_m_s: upwards against the pad.
         acceleration_up_m_s2: of the drone.
-        setpoint_below_m: how far the setpoint has sunk below the drone.
+        setpoint_below_m: how far the setpoint has sunk below the drone, beyond how it flew before.
         range_height_m: of the feet above what the range finder sees.
         range_carried_m: likewise, from when it last saw something, by what the drone has sunk since.
         landed: the autopilot's own word.
@@ -45,7 +45,7 @@ def signs_of(s: Situation) -> Signs:
     """Return the signs in a step's facts."""
     relative = s.approach
     drone, reference = s.drone, s.following.reference
-    sunk = None if drone is None or reference is None else drone.position_enu_m[2] - reference.position_enu_m[2]
+    above = None if drone is None or reference is None else drone.position_enu_m[2] - reference.position_enu_m[2]
     return Signs(
         height_m=None if relative is None else relative.height_m,
         distance_m=relative.distance_m
@@ -53,7 +53,7 @@ def signs_of(s: Situation) -> Signs:
         else None,
         climb_m_s=None if relative is None else relative.climb_m_s,
         acceleration_up_m_s2=None if drone is None else drone.acceleration_up_m_s2,
-        setpoint_below_m=None if sunk is None else float(sunk),
+        setpoint_below_m=None if above is None else float(above) - s.following.rides_m,
         range_height_m=s.below.range_height_m,
         landed=s.autopilot.landed,
         range_carried_m=s.below.range_carried_m,

@@ -20,7 +20,7 @@ from companion.integrity.sightings import FixedPhases, SightingWatch
 from companion.integrity.vehicle_data import Contradictions, CourseWatch, FixStamps
 from companion.landing.steering.flown_plan import FlownPlan
 from companion.landing.steering.sway import Sway
-from companion.landing.steering.virtual_model import Tracking
+from companion.landing.steering.virtual_model import Ride, Tracking
 from companion.planning.guidance import GuidanceMemory, ReferenceState
 from companion.situation.phases import Phase
 from companion.sortie.memory import SortieMemory, move_sortie
@@ -107,6 +107,7 @@ class ModelMemory(Struct, frozen=True, kw_only=True, eq=False):
         plan: that leads to the model, made one period before its time; None once the model is set elsewhere.
         guidance: the guidance law's own memory.
         tracking: how the drone follows it.
+        ride: how high it flies on its setpoints.
         sway: how hard the drone leans.
         yaw_setpoint_rad: last one sent.
     """
@@ -116,6 +117,7 @@ class ModelMemory(Struct, frozen=True, kw_only=True, eq=False):
     plan: FlownPlan | None = None
     guidance: GuidanceMemory | None = None
     tracking: Tracking = field(default_factory=Tracking)
+    ride: Ride = Ride()
     sway: Sway = field(default_factory=Sway)
     yaw_setpoint_rad: float = 0.0
 

@@ -11,7 +11,7 @@ import numpy as np
 from msgspec import Struct, field
 
 from companion.autopilots.response import STATES, Cascade, ResponseModel
-from companion.core.data import GRAVITY_M_S2, Array, OwnState, Setpoint
+from companion.core.data import GRAVITY_M_S2, STEP_MAX_S, Array, OwnState, Setpoint
 from companion.landing.steering.targets import HORIZON_OFFSETS_S
 from companion.planning.guidance import ReferenceState
 from link.frames.rotations import rotate
@@ -20,6 +20,8 @@ from link.records import replace
 _HISTORY_S = 0.6  # longer than any telemetry is late
 UPRIGHT_MIN = 0.5  # cosine of a tilt beyond which nothing is steady
 _AIR_MEAN_S = 1.0  # longer than a gust's beginning, shorter than a change of speed
+_RIDE_MEAN_S = 0.5  # as the last quarter of a metre takes before it may touch
+_RIDE_MAX_M = 0.15  # a lag of 0.3 s while it sinks at 0.5 m/s: what is more does not last
 _BREAK_S = 0.25  # between two reports, after which the deviation is what the next one shows
 _ACCELERATION_MAX_M_S2 = 10.0  # of the model between two steps: it is set back at times, and that is no motion
 
@@ -87,6 +89,27 @@ def update_tracking(
     if since_s > _BREAK_S:
         return replace(tracking, deviation=np.vstack((measured, np.zeros((STATES - 2, 2)))))
     return replace(tracking, deviation=response.update(tracking.deviation, measured, acceleration[:2], since_s))
+
+
+class Ride(Struct, frozen=True, kw_only=True):
+    """How the drone flies on its setpoints: always a little above or below them, by lags and by wind.
+
+    Attributes:
+        above_m: the drone above the model, a mean of the last half second in which it could touch nothing.
+        t_ns: monotonic, of the newest comparison.
+    """
+
+    above_m: float = 0.0
+    t_ns: int | None = None
+
+
+def update_ride(ride: Ride, t_ns: int, above_m: float) -> Ride:
+    """Return the ride after a comparison at the monotonic `t_ns`; the first is all that is known."""
+    above_m = min(max(above_m, -_RIDE_MAX_M), _RIDE_MAX_M)
+    if ride.t_ns is None:
+        return Ride(above_m=above_m, t_ns=t_ns)
+    share = -math.expm1(-min((t_ns - ride.t_ns) * 1e-9, STEP_MAX_S) / _RIDE_MEAN_S)
+    return Ride(above_m=ride.above_m + share * (above_m - ride.above_m), t_ns=t_ns)
 
 
 def tracking_error_max_m(
