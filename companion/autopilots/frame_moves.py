@@ -49,20 +49,24 @@ class FrameMoves(Struct, frozen=True, kw_only=True):
 NO_MOVES = FrameMoves()
 
 
-def after_report(moves: FrameMoves, expected_enu_m: Vector3, before: OwnState, own: OwnState) -> FrameMoves:
+def after_report(moves: FrameMoves, before: OwnState, own: OwnState) -> FrameMoves:
     """Return the moves after a report of the drone; the same object where flying explains it.
+
+    A single velocity that is wrong explains nothing, before the step or after it; then the other report's does.
 
     Args:
         moves: until then.
-        expected_enu_m: where the report before takes the drone.
-        before: that report.
+        before: the report before.
         own: the new one.
     """
     duration_s = (own.t_ns - before.t_ns) * 1e-9
-    (x, y, z), (expected_x, expected_y, expected_z) = own.position_enu_m, expected_enu_m
-    step = (x - expected_x, y - expected_y, z - expected_z)
-    flown_max_m = _flown_max_m(hypot(*before.velocity_enu_m_s), duration_s)
-    if duration_s > _GAP_MAX_S or hypot(*step) <= flown_max_m:
+    if duration_s > _GAP_MAX_S:
+        return moves
+    step, flown_max_m = _unexplained(before, own, before.velocity_enu_m_s, duration_s)
+    if hypot(*step) <= flown_max_m:
+        return moves
+    by_newer, by_newer_max_m = _unexplained(before, own, own.velocity_enu_m_s, duration_s)
+    if hypot(*by_newer) <= by_newer_max_m:
         return moves
     return replace(
         moves,
@@ -83,6 +87,13 @@ def after_origin(moves: FrameMoves, known: LocalFrame | None, frame: LocalFrame)
     if hypot(*(told - seen for told, seen in zip(moved, moves.since_origin_enu_m, strict=True))) > _ONE_STEP_M:
         return counted
     return replace(moves, since_origin_enu_m=_NOWHERE, origin_shift_enu_m=_sum(moves.origin_shift_enu_m, moved))
+
+
+def _unexplained(before: OwnState, own: OwnState, velocity: Vector3, duration_s: float) -> tuple[Vector3, float]:
+    """Return what a velocity leaves of the way between two reports, and how much of it the drone may have flown."""
+    (x, y, z), (start_x, start_y, start_z), (vx, vy, vz) = own.position_enu_m, before.position_enu_m, velocity
+    left = (x - start_x - vx * duration_s, y - start_y - vy * duration_s, z - start_z - vz * duration_s)
+    return left, _flown_max_m(hypot(*velocity), duration_s)
 
 
 def _flown_max_m(speed_m_s: float, duration_s: float) -> float:

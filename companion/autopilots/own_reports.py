@@ -19,7 +19,7 @@ from link.records import replace
 
 HISTORY_NS = 1_000_000_000  # sightings of the pad arrive less late than this
 _POSITION_MAX_M = 1e6  # farther from the origin no local frame is meant
-_SPEED_MAX_M_S = 1e3
+_SPEED_MAX_M_S = 100.0  # no multirotor that lands on vehicles is faster
 _ACCELERATION_OVER_NS = (40_000_000, 120_000_000)  # between two reports that an acceleration is taken from
 _JOLT_OVER_NS = 45_000_000  # a stop within one report is seen in two more at 50 Hz
 # With 0.5 to 1 s about half of PX4's error is left (0.15 of 0.33 m/s); shorter, the steps of its fixes come through.
@@ -37,20 +37,14 @@ def carry(own: OwnState, t_ns: int) -> OwnState:
     dt_s = (t_ns - own.t_ns) * 1e-9
     turned_s = dt_s + own.attitude_age_s
     p, q, r = own.angular_velocity_flu_rad_s
+    (x, y, z), (vx, vy, vz) = own.position_enu_m, own.velocity_enu_m_s
     turn = normalized((1.0, 0.5 * p * turned_s, 0.5 * q * turned_s, 0.5 * r * turned_s))
     return replace(
         own,
         t_ns=t_ns,
-        position_enu_m=_carried(own, t_ns),
+        position_enu_m=(x + vx * dt_s, y + vy * dt_s, z + vz * dt_s),
         orientation_wxyz=multiply(own.orientation_wxyz, turn),
     )
-
-
-def _carried(own: OwnState, t_ns: int) -> Vector3:
-    """Return where the drone is at `t_ns` by a report, at its velocity."""
-    dt_s = (t_ns - own.t_ns) * 1e-9
-    (x, y, z), (vx, vy, vz) = own.position_enu_m, own.velocity_enu_m_s
-    return (x + vx * dt_s, y + vy * dt_s, z + vz * dt_s)
 
 
 def with_report(
@@ -65,7 +59,7 @@ def with_report(
     kept = history
     while kept and own.t_ns - kept[0].t_ns > HISTORY_NS:
         kept = kept[1:]
-    moved = after_report(moves, _carried(kept[-1], own.t_ns), kept[-1], own) if kept else moves
+    moved = after_report(moves, kept[-1], own) if kept else moves
     if moved is not moves:
         return (own,), moved
     up_m_s2, jolt_m_s2 = _acceleration_up_m_s2(kept, own), _jolt_m_s2(kept, own)

@@ -110,6 +110,17 @@ def test_jump_that_flying_cannot_explain_is_a_shift_of_the_frame() -> None:
     assert back.view.frame_moves.shift_enu_m == pytest.approx((0.0, 0.0, 0.0))
 
 
+@given(wrong=st.tuples(*[st.floats(-99.0, 99.0)] * 3))
+def test_single_velocity_that_is_wrong_is_no_shift(wrong: Vector3) -> None:
+    told = [_at(ms, (ms * 0.01, 0.0, 0.0), wrong if ms == 40 else (10.0, 0.0, 0.0)) for ms in (0, 20, 40, 60, 80)]
+    assert _hear(LEVEL, *told).view.frame_moves.shift_enu_m == (0.0, 0.0, 0.0)
+
+
+def test_velocity_that_no_drone_has_is_no_report() -> None:
+    state = _hear(LEVEL, _at(0, (0.0, 0.0, 0.0)))
+    assert _hear(_at(20, (0.0, 0.0, 0.0), (0.0, 0.0, 101.0)), state=state) == state
+
+
 @pytest.mark.parametrize("at_once_m", [0.11, 0.18])
 def test_correction_with_a_fix_is_no_shift_and_a_larger_one_is(at_once_m: float) -> None:
     state = _hear(LEVEL, _at(0, (0.0, 0.0, 0.0), (5.0, 0.0, 0.0)), _at(20, (0.1 + at_once_m, 0.0, 0.0)))
