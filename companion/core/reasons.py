@@ -60,6 +60,7 @@ class Reason(Enum):
     VEHICLE_UNCERTAIN = "vehicle position too uncertain"
     VEHICLE_LINK_LOST = "vehicle's link lost"
     VEHICLE_CLOCK_AHEAD = "vehicle's clock is ahead"
+    STAMPS_STEPPED = "stamps of the fixes have stepped: the vehicle's clock, or the autopilot's, was set"
     VEHICLE_CONTRADICTS_ITSELF = "vehicle data contradict themselves"
     SEEN_ELSEWHERE = (
         "pad is seen where both receivers say that it is not: see the detector's board and mounting, both receivers, or"

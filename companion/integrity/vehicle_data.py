@@ -1,6 +1,6 @@
-"""Whether the vehicle's data contradict each other, come from the future, or head where it does not go; pure.
+"""Whether the vehicle's data contradict each other, or head where it does not go; pure.
 
-How many of them the estimator has lately rejected tells the first, how old the newest fix was when it came the second.
+How many of them the estimator has lately rejected tells the first.
 A velocity with its axes exchanged, or stamps that jump, make the estimator reject what it has just believed, again and
 again: its estimate swings between the two. Outages and brakes have a few rejected, one after the other.
 
@@ -65,34 +65,6 @@ def update_contradictions(before: Contradictions, health: BufferHealth, t_ns: in
 def contradicts_itself(s: Situation, c: CompanionConfig) -> bool:
     """Return whether so many of the vehicle's measurements were rejected that nothing says which are right."""
     return s.vehicle.rejected_share > c.integrity.rejected_share_max
-
-
-class FixStamps(Struct, frozen=True, kw_only=True):
-    """The newest accepted fix.
-
-    Attributes:
-        newest_ns: when it was taken, by its own stamp; None before the first.
-        age_on_arrival_s: of it, or of a newer refused one, when it came; never negative where both clocks are right.
-    """
-
-    newest_ns: int | None = None
-    age_on_arrival_s: float | None = None
-
-
-def update_fix_stamps(stamps: FixStamps, newest_ns: int | None, t_ns: int, ahead_s: float | None = None) -> FixStamps:
-    """Return the stamps with the newest fix as it is known at `t_ns`.
-
-    Args:
-        stamps: so far.
-        newest_ns: stamp of the newest accepted fix.
-        t_ns: now.
-        ahead_s: by which a newer one came before its stamp, too far to be accepted; None if none did.
-    """
-    if ahead_s is not None:
-        return FixStamps(newest_ns=newest_ns, age_on_arrival_s=-ahead_s)
-    if newest_ns == stamps.newest_ns:
-        return stamps
-    return FixStamps(newest_ns=newest_ns, age_on_arrival_s=None if newest_ns is None else (t_ns - newest_ns) * 1e-9)
 
 
 _COURSE_OVER_S = 2.0  # heading and course are compared over so long: a cheap heading has 5 degrees of noise

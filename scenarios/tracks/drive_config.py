@@ -9,8 +9,9 @@ from link.program.toml_config import Ascending, NotNegative, Positive, StrictMod
 
 Waypoint = tuple[float, float]
 """East and north in W, m."""
-Curvature = Annotated[float, Field(ge=-10.0, le=10.0)]
-"""1/m, positive to the left; beyond it a vehicle turns on the spot."""
+_CURVATURE_MAX_PER_M = 10.0  # beyond it a vehicle turns on the spot
+Curvature = Annotated[float, Field(ge=-_CURVATURE_MAX_PER_M, le=_CURVATURE_MAX_PER_M)]
+"""1/m, positive to the left."""
 
 
 class Departure(StrictModel):
@@ -68,6 +69,9 @@ class DriveTrack(StrictModel):
         for place, ((_, _, end_per_m), (_, begin_per_m, _)) in enumerate(pairwise(self.stretches)):
             if end_per_m != begin_per_m:
                 raise ValueError(f"the curvature jumps between stretches[{place}] and [{place + 1}]")
+        for place, (_, length_m, left_m) in enumerate(self.shifts):
+            if 8.0 * abs(left_m) > _CURVATURE_MAX_PER_M * length_m**2:
+                raise ValueError(f"shifts[{place}] is too short for {left_m:g} m to the side")
         for place, ((before_m, _), (after_m, _)) in enumerate(pairwise(self.grades)):
             if after_m <= before_m:
                 raise ValueError(f"grades[{place + 1}] must be behind grades[{place}]")

@@ -169,6 +169,9 @@ ABORTS: dict[str, Abort] = {
         reason=Reason.CONTACT_RISKY,
         fault=_when_committed(_pad_is_described(forward_m=1.5 * _BESIDE_M, up_m=0.0)),
     ),
+    "stamps_stepped": Abort(
+        reason=Reason.STAMPS_STEPPED, scenario="straight_15", phase=Phase.CHASE, fault=_vehicles_clock_is_set(-0.1)
+    ),
     "contradicting": Abort(
         reason=Reason.VEHICLE_CONTRADICTS_ITSELF,
         companion={"descent": {**_LONG_ALIGNMENT, "strays_max": 20}},
@@ -181,9 +184,9 @@ ABORTS: dict[str, Abort] = {
     "road_below": Abort(
         reason=Reason.ROAD_BELOW,
         scenario="straight_15",
-        phase=Phase.CHASE,
+        phase=Phase.IDLE,
         fault=_vehicles_clock_is_set(-_OVER_EDGE_M / 15.0),
-        within_s=20.0,
+        within_s=40.0,
         touches=True,
     ),
     "offset_unknown": Abort(

@@ -9,6 +9,7 @@ from companion.core.data import GRAVITY_M_S2
 from companion.core.reasons import Cause, Reason
 from companion.integrity.heights import is_seen_too_near
 from companion.integrity.sightings import do_sightings_disagree, is_seen_elsewhere
+from companion.integrity.stamps import have_stamps_stepped, is_stamped_ahead
 from companion.integrity.vehicle_data import contradicts_itself
 from companion.landing.decisions.conditions import (
     AUTOPILOT_SILENT,
@@ -52,12 +53,6 @@ def is_token_lost(s: Situation, c: CompanionConfig) -> bool:
     """Return whether the vehicle's program has ended, or its network, and no fix is fresh."""
     age_s = s.vehicle.fix_age_s
     return s.vehicle.is_alive is False and (age_s is None or age_s > c.abort.alive_lost_fix_age_max_s)
-
-
-def is_stamped_ahead(s: Situation, c: CompanionConfig) -> bool:
-    """Return whether the newest fix came before it was taken: the vehicle's clock, or ours, is wrong."""
-    age_s = s.vehicle.fix_age_on_arrival_s
-    return age_s is not None and age_s < -c.integrity.fix_ahead_max_s
 
 
 def is_pad_unplaced(s: Situation, _: CompanionConfig) -> bool:
@@ -187,6 +182,7 @@ ABORTS = (
         is_true=is_stamped_ahead,
         hold_s=lambda _, c: c.integrity.fix_ahead_hold_s,
     ),
+    Condition(reason=Reason.STAMPS_STEPPED, phases=LANDING_PHASES, is_true=have_stamps_stepped),
     *AUTOPILOT_SILENT,
     Condition(
         reason=Reason.HEADING_UNKNOWN,

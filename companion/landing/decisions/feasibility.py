@@ -9,8 +9,8 @@ from companion.config.autopilot import Guide
 from companion.config.companion import CompanionConfig
 from companion.core.reasons import Cause, Reason
 from companion.integrity.heights import road_above_ground_m, road_distance_m
+from companion.integrity.stamps import have_stamps_stepped, is_stamped_ahead
 from companion.integrity.vehicle_data import contradicts_itself
-from companion.landing.decisions.aborts import is_stamped_ahead
 from companion.landing.decisions.conditions import (
     AUTOPILOT_SILENT,
     Condition,
@@ -33,6 +33,7 @@ _RECEIVER_TOLD_S = 3.0  # it says so once a second
 _ROUNDING = 1e-6
 _BEFORE_A_FLIGHT = frozenset({Phase.IDLE, Phase.SECURED, Phase.PILOT, Phase.HOLD, Phase.WAITING})
 _BEFORE_A_CHASE = _BEFORE_A_FLIGHT | {Phase.ABORT}
+_BEFORE_A_RETRY = frozenset({Phase.WAITING, Phase.HOLD, Phase.ABORT})
 _BEFORE_ANY_CHASE = _BEFORE_A_CHASE | {Phase.FOLLOW, Phase.RETURN}
 """A sortie comes home on a low battery as well: it has nowhere else to land."""
 
@@ -178,6 +179,7 @@ OBSTACLES = (
         hold_s=lambda _, c: c.chase.driving_hold_s,
         cause=_tell_stamped_late,
     ),
+    Condition(reason=Reason.STAMPS_STEPPED, phases=_BEFORE_A_RETRY, is_true=have_stamps_stepped),
     Condition(
         reason=Reason.VEHICLE_TOO_FAST,
         phases=_BEFORE_ANY_CHASE,

@@ -5,8 +5,9 @@ import math
 from companion.config.companion import CompanionConfig
 from companion.core.reasons import Cause, Reason
 from companion.integrity.heights import VEHICLE_M
+from companion.integrity.stamps import is_stamped_ahead
 from companion.integrity.vehicle_data import contradicts_itself
-from companion.landing.decisions.aborts import is_not_followed, is_stamped_ahead, is_token_lost
+from companion.landing.decisions.aborts import is_not_followed, is_token_lost
 from companion.landing.decisions.conditions import (
     HEARD,
     Condition,

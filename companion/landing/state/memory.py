@@ -17,7 +17,8 @@ from companion.core.reasons import Cause, Reason
 from companion.forecast.drivers import Drivers
 from companion.forecast.gusts import Gusts
 from companion.integrity.sightings import FixedPhases, SightingWatch
-from companion.integrity.vehicle_data import Contradictions, CourseWatch, FixStamps
+from companion.integrity.stamps import FixStamps
+from companion.integrity.vehicle_data import Contradictions, CourseWatch
 from companion.landing.steering.flown_plan import FlownPlan
 from companion.landing.steering.sway import Sway
 from companion.landing.steering.virtual_model import Ride, Tracking
@@ -74,7 +75,7 @@ class VehicleMemory(Struct, frozen=True, kw_only=True, eq=False):
     Attributes:
         estimator: the estimator's own memory.
         hindsight: how the vehicle has driven, and how late that is known.
-        fix_stamps: whether its fixes come from the future.
+        fix_stamps: whether its fixes come from the future, and whether a clock was set.
         contradictions: of its data.
         sightings: whether they agree with each other.
         phases: whether its receiver and the drone's have fixed ones.

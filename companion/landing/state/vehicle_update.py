@@ -13,13 +13,8 @@ from companion.integrity.sightings import (
     update_fixed_phases,
     update_sightings,
 )
-from companion.integrity.vehicle_data import (
-    Contradictions,
-    FixStamps,
-    update_contradictions,
-    update_fix_stamps,
-    without_contradicted_heading,
-)
+from companion.integrity.stamps import FixStamps, update_fix_stamps
+from companion.integrity.vehicle_data import Contradictions, update_contradictions, without_contradicted_heading
 from companion.landing.state.memory import VehicleMemory, between
 from companion.landing.state.step_data import StepInputs, System
 from companion.landing.steering.targets import HORIZON_OFFSETS_S
@@ -61,7 +56,11 @@ def update_vehicle(vehicle: VehicleMemory, inputs: StepInputs, system: System) -
         estimator=estimator,
         hindsight=update_hindsight(vehicle.hindsight, system.estimator, estimator, inputs.t_ns, monotonic_ns=now_ns),
         fix_stamps=update_fix_stamps(
-            vehicle.fix_stamps, system.estimator.newest_fix_ns(estimator), inputs.t_ns, inputs.vehicle.fix_ahead_s
+            vehicle.fix_stamps,
+            system.estimator.newest_fix_ns(estimator),
+            inputs.t_ns,
+            now_ns,
+            inputs.vehicle.fix_ahead_s,
         ),
         contradictions=contradictions,
         sightings=sightings,

@@ -1,11 +1,16 @@
-"""Fixes from the future: no landing on them is begun or goes on; a few early ones and late ones change nothing."""
+"""Fixes from the future, or whose stamps step: no landing on them is begun or goes on; a few of them change nothing."""
 
+from collections.abc import Iterable
+
+import numpy as np
 import pytest
 
 from companion.core.reasons import Reason
-from companion.integrity.vehicle_data import FixStamps, update_fix_stamps
+from companion.integrity.stamps import FixStamps, have_stamps_stepped, update_fix_stamps
 from companion.situation.phases import Phase
 from link.messages import Command
+from link.records import replace
+from tests.companion.facts import changed, pad_at, situation
 from tests.companion.world import CONFIG, LANDING, START_NS, Flight, reached
 
 AHEAD_S = 0.3
@@ -49,16 +54,71 @@ def test_early_fixes_among_others_change_nothing() -> None:
         assert flight.phase is not Phase.ABORT
 
 
+def heard(stamps: FixStamps, ages_s: Iterable[float], period_s: float = 0.1) -> FixStamps:
+    """The stamps after fixes of these ages, one each period."""
+    for age_s in ages_s:
+        now_ns = (stamps.ages[-1][0] if not stamps.recent else stamps.recent[-1][0]) if stamps.ages else START_NS
+        now_ns += round(period_s * 1e9)
+        stamps = update_fix_stamps(stamps, now_ns - round(age_s * 1e9), now_ns, now_ns)
+    return stamps
+
+
+def jittering(count: int, about_s: float = 0.1, seed: int = 1) -> list[float]:
+    return [about_s + off_s for off_s in np.random.default_rng(seed).uniform(-0.05, 0.05, count).tolist()]
+
+
+@pytest.mark.parametrize("stepped_s", [-0.4, -0.16, 0.16, 0.4])
+@pytest.mark.parametrize("period_s", [0.05, 0.1, 0.2])
+def test_clock_that_was_set_is_found_within_two_seconds_and_by_how_much(stepped_s: float, period_s: float) -> None:
+    before = heard(FixStamps(), jittering(60), period_s)
+    after = heard(before, jittering(round(2.0 / period_s), 0.1 + stepped_s, seed=2), period_s)
+    assert after.stepped_s == pytest.approx(stepped_s, abs=0.1)
+    assert after.stepped_s * stepped_s > 0.0
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_jitter_and_a_burst_after_an_outage_are_no_step(seed: int) -> None:
+    ages_s = [*jittering(80, seed=seed), 2.0, 1.5, 1.0, 0.5, *jittering(80, seed=100 + seed)]
+    stamps = FixStamps()
+    for age_s in ages_s:
+        stamps = heard(stamps, [age_s])
+        assert stamps.stepped_s == 0.0
+
+
+def test_step_is_over_once_fixes_come_as_before_or_after_a_minute() -> None:
+    stepped = heard(heard(FixStamps(), jittering(60)), jittering(20, 0.3, seed=2))
+    assert stepped.stepped_s > 0.0
+    assert heard(stepped, jittering(20, seed=3)).stepped_s == 0.0
+    assert heard(stepped, jittering(590, 0.3, seed=3)).stepped_s > 0.0
+    assert heard(stepped, jittering(620, 0.3, seed=3)).stepped_s == 0.0
+
+
+@pytest.mark.parametrize(
+    ("speed_m_s", "stepped_s", "is_seen", "expected"),
+    [(5.0, 0.07, False, True), (5.0, 0.055, False, False), (15.0, -0.06, False, True), (15.0, -0.06, True, False)],
+)
+def test_step_counts_where_it_moves_an_unseen_pad_by_more_than_s2_allows(
+    speed_m_s: float, stepped_s: float, expected: bool, *, is_seen: bool
+) -> None:
+    pad = pad_at((speed_m_s, 0.0, 0.0))
+    pad = replace(pad, frame_offset=replace(pad.frame_offset, is_confirmed=is_seen))
+    assert have_stamps_stepped(changed(situation(pad=pad), stamps_stepped_s=stepped_s), CONFIG) is expected
+
+
+def told(stamps: FixStamps, newest_ns: int | None, t_ns: int, ahead_s: float | None = None) -> FixStamps:
+    return update_fix_stamps(stamps, newest_ns, t_ns, t_ns, ahead_s)
+
+
 def test_age_is_that_of_the_step_which_took_the_fix_in() -> None:
-    first = update_fix_stamps(FixStamps(), START_NS, START_NS + 200_000_000)
+    first = told(FixStamps(), START_NS, START_NS + 200_000_000)
     assert first.age_on_arrival_s == pytest.approx(0.2)
-    assert update_fix_stamps(first, START_NS, START_NS + 900_000_000) == first
-    second = update_fix_stamps(first, START_NS + 500_000_000, START_NS + 400_000_000)
+    assert told(first, START_NS, START_NS + 900_000_000) == first
+    second = told(first, START_NS + 500_000_000, START_NS + 400_000_000)
     assert second.age_on_arrival_s == pytest.approx(-0.1)
-    assert update_fix_stamps(second, None, START_NS) == FixStamps()
+    assert told(second, None, START_NS) == FixStamps()
 
 
 def test_refused_fix_from_the_future_tells_by_how_much_it_came_early() -> None:
-    known = update_fix_stamps(FixStamps(), START_NS, START_NS + 200_000_000)
-    told = update_fix_stamps(known, START_NS, START_NS + 300_000_000, ahead_s=3.0)
-    assert told == FixStamps(newest_ns=START_NS, age_on_arrival_s=-3.0)
+    known = told(FixStamps(), START_NS, START_NS + 200_000_000)
+    refused = told(known, START_NS, START_NS + 300_000_000, ahead_s=3.0)
+    assert refused == replace(known, age_on_arrival_s=-3.0)

@@ -48,6 +48,9 @@ UNSAFE: dict[Reason, Situation] = {
         situation(), is_alive=False, fix_age_s=CONFIG.abort.alive_lost_fix_age_max_s + 0.01
     ),
     Reason.VEHICLE_CLOCK_AHEAD: changed(situation(), fix_age_on_arrival_s=-CONFIG.integrity.fix_ahead_max_s - 0.01),
+    Reason.STAMPS_STEPPED: changed(
+        situation(pad=replace(pad_at((4.0, 1.0, 0.0)), frame_offset=FrameOffset())), stamps_stepped_s=0.3
+    ),
     Reason.OWN_POSITION_OLD: replace(situation(), drone=None),
     Reason.OWN_ATTITUDE_OLD: replace(situation(), drone=replace(drone_at(1.5, pad=pad_at()), attitude_known=False)),
     Reason.HEADING_UNKNOWN: situation(pad=pad_at(placed=False)),

@@ -1,0 +1,110 @@
+"""Whether the vehicle's fixes come from the future, and whether their stamps have stepped; pure.
+
+A fix is as old when it comes as the link was slow and the two clocks differ. A link has its quick and its slow moments.
+A clock that was set, the vehicle's or the one that the autopilot's UTC comes from, makes each fix by as much older or
+younger: then all of the last second are older than any of the seconds before, or younger. The pad is then believed
+elsewhere on the vehicle's way, and nobody knows which of the two was right.
+"""
+
+from msgspec import Struct
+
+from companion.config.companion import CompanionConfig
+from companion.situation.situation import Situation
+from companion.vehicle.pad_reach import cone_radius_at_pad_m
+from link.records import replace
+
+_RECENT_NS = 1_000_000_000
+_KEPT_NS = 10_000_000_000
+_KNOWN_NS = 60_000_000_000  # after which nobody remembers another clock
+_RECENT_MIN, _EARLIER_MIN = 4, 10  # fixes, of a receiver at 4 Hz
+_REFINED_S = 0.05  # by which the map to UTC may be refined at once
+
+Ages = tuple[tuple[int, float], ...]
+"""Monotonic ns of its arrival, and the age of a fix then, s; oldest first."""
+
+
+class FixStamps(Struct, frozen=True, kw_only=True):
+    """The newest accepted fix, and how old those of the last seconds were when they came.
+
+    Attributes:
+        newest_ns: when it was taken, by its own stamp; None before the first.
+        age_on_arrival_s: of it, or of a newer refused one, when it came; never negative where both clocks are right.
+        ages: of those of the last seconds, or of those before a step.
+        recent: of those of the last second, after a step.
+        stepped_s: by which the fixes are older than before since a clock was set, or negative; 0 where none was.
+        stepped_ns: when that was found, monotonic.
+    """
+
+    newest_ns: int | None = None
+    age_on_arrival_s: float | None = None
+    ages: Ages = ()
+    recent: Ages = ()
+    stepped_s: float = 0.0
+    stepped_ns: int = 0
+
+
+def update_fix_stamps(
+    stamps: FixStamps, newest_ns: int | None, t_ns: int, monotonic_ns: int, ahead_s: float | None = None
+) -> FixStamps:
+    """Return the stamps with the newest fix as it is known at `t_ns`.
+
+    Args:
+        stamps: so far.
+        newest_ns: stamp of the newest accepted fix.
+        t_ns: now, UTC.
+        monotonic_ns: now, for spans of time.
+        ahead_s: by which a newer one came before its stamp, too far to be accepted; None if none did.
+    """
+    if ahead_s is not None:
+        return replace(stamps, newest_ns=newest_ns, age_on_arrival_s=-ahead_s)
+    if newest_ns == stamps.newest_ns:
+        return stamps
+    if newest_ns is None:
+        return FixStamps()
+    age_s = (t_ns - newest_ns) * 1e-9
+    return _compare(replace(stamps, newest_ns=newest_ns, age_on_arrival_s=age_s), (monotonic_ns, age_s))
+
+
+def _compare(stamps: FixStamps, newest: tuple[int, float]) -> FixStamps:
+    """Return the stamps after a fix has come: those before a step stay until it is over, or long ago."""
+    now_ns = newest[0]
+    if stamps.stepped_s and now_ns - stamps.stepped_ns > _KNOWN_NS:
+        stamps = replace(stamps, ages=stamps.recent, recent=(), stepped_s=0.0)
+    if stamps.stepped_s:
+        recent = _since((*stamps.recent, newest), now_ns - _RECENT_NS)
+        return replace(stamps, recent=recent, stepped_s=_step_s(stamps.ages, recent))
+    ages = _since((*stamps.ages, newest), now_ns - _KEPT_NS)
+    recent = _since(ages, now_ns - _RECENT_NS)
+    earlier = ages[: len(ages) - len(recent)]
+    stepped_s = _step_s(earlier, recent)
+    if not stepped_s:
+        return replace(stamps, ages=ages, recent=())
+    return replace(stamps, ages=earlier, recent=recent, stepped_s=stepped_s, stepped_ns=now_ns)
+
+
+def _since(ages: Ages, begin_ns: int) -> Ages:
+    return tuple(one for one in ages if one[0] > begin_ns)
+
+
+def _step_s(earlier: Ages, recent: Ages) -> float:
+    """Return by how much all recent fixes are older than any before, negative if younger; 0 where they are not."""
+    if len(recent) < _RECENT_MIN or len(earlier) < _EARLIER_MIN:
+        return 0.0
+    before, now = [age_s for _, age_s in earlier], [age_s for _, age_s in recent]
+    if min(now) - max(before) > _REFINED_S:
+        return min(now) - max(before)
+    return max(now) - min(before) if min(before) - max(now) > _REFINED_S else 0.0
+
+
+def is_stamped_ahead(s: Situation, c: CompanionConfig) -> bool:
+    """Return whether the newest fix came before it was taken: the vehicle's clock, or ours, is wrong."""
+    age_s = s.vehicle.fix_age_on_arrival_s
+    return age_s is not None and age_s < -c.integrity.fix_ahead_max_s
+
+
+def have_stamps_stepped(s: Situation, c: CompanionConfig) -> bool:
+    """Return whether a step of the stamps puts the pad off by more than S2 allows, and nothing sees where it is."""
+    if s.pad is None or s.pad.frame_offset.is_confirmed or is_stamped_ahead(s, c):
+        return False
+    off_m = abs(s.vehicle.stamps_stepped_s) * s.pad.ground_speed_m_s
+    return off_m > cone_radius_at_pad_m(s.pad.half_width_m, c)
