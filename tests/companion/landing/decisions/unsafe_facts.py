@@ -49,7 +49,8 @@ UNSAFE: dict[Reason, Situation] = {
     ),
     Reason.VEHICLE_CLOCK_AHEAD: changed(situation(), fix_age_on_arrival_s=-CONFIG.integrity.fix_ahead_max_s - 0.01),
     Reason.STAMPS_STEPPED: changed(
-        situation(pad=replace(pad_at((4.0, 1.0, 0.0)), frame_offset=FrameOffset())), stamps_stepped_s=0.3
+        situation(pad=replace(pad_at((4.0, 1.0, 0.0)), frame_offset=FrameOffset(is_confirmed=False))),
+        stamps_stepped_s=0.3,
     ),
     Reason.OWN_POSITION_OLD: replace(situation(), drone=None),
     Reason.OWN_ATTITUDE_OLD: replace(situation(), drone=replace(drone_at(1.5, pad=pad_at()), attitude_known=False)),
