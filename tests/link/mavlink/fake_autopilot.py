@@ -31,6 +31,7 @@ class FakeAutopilot:
     results: dict[int, tuple[int, ...]] = field(default_factory=dict)
     parameters: dict[str, tuple[float, int]] = field(default_factory=dict)
     mute: bool = False
+    left_out: frozenset[int] = frozenset()
     utc_known: bool = True
 
     def __post_init__(self) -> None:
@@ -49,7 +50,7 @@ class FakeAutopilot:
         self.intervals_ns.clear()
 
     def send(self, message: Message) -> None:
-        if not self.mute:
+        if not self.mute and message.get_msgId() not in self.left_out:
             self.output.append(self.codec.encode(message))
 
     def take_output(self) -> list[bytes]:

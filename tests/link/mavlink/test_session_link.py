@@ -90,6 +90,18 @@ def test_silence_of_three_seconds_is_a_lost_link_and_its_end_a_regained_one() ->
     assert run.session.link_up
 
 
+def test_six_missing_heartbeats_among_other_messages_are_a_lost_link_until_the_next_one() -> None:
+    run = pair()
+    run.run(5.0)
+    run.autopilot.left_out = frozenset({mavlink.MAVLINK_MSG_ID_HEARTBEAT})
+    (lost,) = of_kind(run.run(10.0), LinkLost)
+    assert lost.t_ns - lost.last_heard_ns < 2 * S
+    assert not run.session.link_up
+    run.autopilot.left_out = frozenset()
+    assert len(of_kind(run.run(2.0), LinkRegained)) == 1
+    assert run.session.link_up
+
+
 def test_clocks_of_a_running_link_map_to_utc_within_2_ms_at_any_drift() -> None:
     for drift in (-0.025, 0.025):
         run = pair(drift)
