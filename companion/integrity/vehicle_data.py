@@ -146,9 +146,11 @@ def _off_max_rad(pad: PadPath, config: CompanionConfig) -> float:
 
 
 def _judge(watch: CourseWatch, off_max_rad: float, slip_rad: float) -> CourseWatch:
-    """Return the watch after a comparison: a bend's slip excuses a heading, but shows none to be right after all."""
+    """Return the watch after a comparison: a bend's slip excuses a heading that has agreed, and proves none."""
     off_rad = abs(math.atan2(watch.off_sin, watch.off_cos))
-    within_rad = off_max_rad + slip_rad if watch.off_rad is None else _BACK_WITHIN * off_max_rad
+    within_rad = off_max_rad if watch.off_rad is None else _BACK_WITHIN * off_max_rad
+    if watch.has_agreed and watch.off_rad is None:
+        within_rad += slip_rad
     if off_rad <= within_rad:
         is_known = watch.has_agreed and not watch.has_stopped and watch.off_rad is None
         return watch if is_known else replace(watch, has_agreed=True, has_stopped=False, off_rad=None)

@@ -79,8 +79,10 @@ def test_white_noise_of_a_cheap_heading_contradicts_nothing() -> None:
 def test_tight_curve_explains_more() -> None:
     lateral_m_s2 = 4.0  # at 5 m/s a radius of 6 m
     off_rad = math.radians(25.0)
-    assert course_after(CourseWatch(), driving(off_rad, lateral_m_s2=lateral_m_s2)).off_rad is None
-    assert course_after(CourseWatch(), driving(off_rad)).off_rad is not None
+    agreed = course_after(CourseWatch(), driving(0.0))
+    assert course_after(agreed, driving(off_rad, lateral_m_s2=lateral_m_s2)).off_rad is None
+    assert course_after(agreed, driving(off_rad)).off_rad is not None
+    assert course_after(CourseWatch(), driving(off_rad, lateral_m_s2=lateral_m_s2)).off_rad is not None
 
 
 def test_course_that_is_known_poorly_contradicts_less() -> None:
@@ -135,8 +137,10 @@ def test_heading_is_off_beyond_what_is_set_and_three_deviations_of_the_course(si
 @pytest.mark.parametrize("lateral_m_s2", [-2.0, 2.0])
 def test_curve_explains_the_slip_of_a_point_three_metres_off_the_axle(lateral_m_s2: float) -> None:
     slip_rad = 3.0 * 2.0 / 5.0**2  # times the curvature
-    assert not is_off(driving(LIMIT_RAD + slip_rad - 0.01, lateral_m_s2=lateral_m_s2))
-    assert is_off(driving(LIMIT_RAD + slip_rad + 0.01, lateral_m_s2=lateral_m_s2))
+    for more_rad, is_off_now in ((-0.01, False), (0.01, True)):
+        agreed = course_after(CourseWatch(), driving(0.0))
+        bends = driving(LIMIT_RAD + slip_rad + more_rad, lateral_m_s2=lateral_m_s2)
+        assert (course_after(agreed, bends, 20.0).off_rad is not None) is is_off_now
 
 
 def test_course_is_that_of_now_and_not_of_what_is_ahead() -> None:
