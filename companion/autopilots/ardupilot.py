@@ -12,6 +12,7 @@ from types import MappingProxyType
 from companion.autopilots.driver import AutopilotView, Desire, DriverMemory
 from companion.autopilots.limits import (
     INTEGRAL_FACTOR_MAX,
+    TILT_LEAST_DEG,
     Named,
     acceleration_of_tilt_m_s2,
     attitude_lag_s,
@@ -43,8 +44,8 @@ _CENTI = 0.01
 _TILT_DEG = 30.0  # taken while the parameter is unknown: its default
 _TILT_MAX_DEG = 45.0  # nothing is planned beyond
 # Each with its name up to release 4.6, in centimetres or centidegrees, and from 4.7 on.
-_TILT = (Named("ANGLE_MAX", _CENTI), Named("ATC_ANGLE_MAX"))
-_TILT_BY_POSITION = (Named("PSC_ANGLE_MAX"),)  # the smaller one counts; 0, the default, is none
+_TILT = (Named("ANGLE_MAX", _CENTI, TILT_LEAST_DEG), Named("ATC_ANGLE_MAX", least=TILT_LEAST_DEG))
+_TILT_BY_POSITION = (Named("PSC_ANGLE_MAX", least=TILT_LEAST_DEG),)  # the smaller one counts; 0, the default, is none
 _SPEED = (Named("WPNAV_SPEED", _CENTI), Named("WP_SPD"))
 _CLIMB = (Named("WPNAV_SPEED_UP", _CENTI), Named("WP_SPD_UP"))
 _DESCENT = (Named("WPNAV_SPEED_DN", _CENTI), Named("WP_SPD_DN"))

@@ -9,6 +9,7 @@ from types import MappingProxyType
 from companion.autopilots.driver import AutopilotView, Desire, DriverMemory
 from companion.autopilots.limits import (
     INTEGRAL_FACTOR_MAX,
+    TILT_LEAST_DEG,
     Named,
     acceleration_of_tilt_m_s2,
     attitude_lag_s,
@@ -109,9 +110,9 @@ class Px4Driver:
         MPC_ACC_*_MAX and MPC_JERK_MAX belong to the flight tasks of its own modes; OFFBOARD gives a setpoint to the
         position controller as it is (MulticopterPositionControl).
         """
-        speed_m_s, climb_m_s, descent_m_s, tilt_deg = (
-            find_limit(parameters, (Named(name),)) for (name,) in self.limit_names
-        )
+        *names, (tilt_name,) = self.limit_names
+        speed_m_s, climb_m_s, descent_m_s = (find_limit(parameters, (Named(name),)) for (name,) in names)
+        tilt_deg = find_limit(parameters, (Named(tilt_name, least=TILT_LEAST_DEG),))
         return replace(
             wanted,
             speed_max_m_s=min(wanted.speed_max_m_s, speed_m_s),

@@ -183,6 +183,7 @@ def test_jerk_and_acceleration_count_as_no_less_than_the_firmware_states(told: f
         ({"ANGLE_MAX": 4500.0, "PSC_ANGLE_MAX": 25.0}, 25.0),
         ({"ANGLE_MAX": 2500.0, "PSC_ANGLE_MAX": 40.0}, 25.0),
         ({"ANGLE_MAX": 4000.0, "PSC_ANGLE_MAX": 0.0}, 40.0),  # 0, the default, is none
+        ({"ANGLE_MAX": 20.0}, 10.0),  # so little nobody means
         ({"PSC_ANGLE_MAX": 45.0}, 30.0),  # the general one is not known yet
     ],
 )

@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from companion.autopilots.driver import NO_AUTOPILOT, AutopilotCommand, AutopilotView, Desire, DriverMemory
+from companion.autopilots.limits import acceleration_of_tilt_m_s2
 from companion.autopilots.px4 import Px4Driver
 from companion.config.companion import CompanionConfig
 from link.mavlink.dialect import mavlink
@@ -135,4 +136,4 @@ def test_no_parameter_whatever_takes_a_limit_away(parameters: dict[str, float]) 
     assert 0.0 < cut.climb_max_m_s <= wanted.climb_max_m_s
     assert 0.0 < cut.descent_max_m_s <= wanted.descent_max_m_s
     assert cut.acceleration_max_m_s2 == wanted.acceleration_max_m_s2
-    assert 0.0 < cut.tilt_acceleration_m_s2 < math.inf
+    assert acceleration_of_tilt_m_s2(10.0) <= cut.tilt_acceleration_m_s2 < math.inf
