@@ -2,8 +2,8 @@
 
 A fix is as old when it comes as the link was slow and the two clocks differ. A link has its quick and its slow moments.
 A clock that was set, the vehicle's or the one that the autopilot's UTC comes from, makes each fix by as much older or
-younger: then all of the last second are older than any of the seconds before, or younger. The pad is then believed
-elsewhere on the vehicle's way, and nobody knows which of the two was right.
+younger: all of the last second, and the last four, are then older than any of the seconds before, or younger. The pad
+is believed elsewhere on the vehicle's way, and nobody knows which of the two times was right.
 """
 
 from msgspec import Struct
@@ -16,7 +16,7 @@ from link.records import replace
 _RECENT_NS = 1_000_000_000
 _KEPT_NS = 10_000_000_000
 _KNOWN_NS = 60_000_000_000  # after which nobody remembers another clock
-_RECENT_MIN, _EARLIER_MIN = 4, 10  # fixes, of a receiver at 4 Hz
+_RECENT_MIN, _EARLIER_MIN = 4, 10  # fixes
 _REFINED_S = 0.05  # by which the map to UTC may be refined at once
 
 Ages = tuple[tuple[int, float], ...]
@@ -30,7 +30,7 @@ class FixStamps(Struct, frozen=True, kw_only=True):
         newest_ns: when it was taken, by its own stamp; None before the first.
         age_on_arrival_s: of it, or of a newer refused one, when it came; never negative where both clocks are right.
         ages: of those of the last seconds, or of those before a step.
-        recent: of those of the last second, after a step.
+        recent: of the newest ones, after a step.
         stepped_s: by which the fixes are older than before since a clock was set, or negative; 0 where none was.
         stepped_ns: when that was found, monotonic.
     """
@@ -71,10 +71,10 @@ def _compare(stamps: FixStamps, newest: tuple[int, float]) -> FixStamps:
     if stamps.stepped_s and now_ns - stamps.stepped_ns > _KNOWN_NS:
         stamps = replace(stamps, ages=stamps.recent, recent=(), stepped_s=0.0)
     if stamps.stepped_s:
-        recent = _since((*stamps.recent, newest), now_ns - _RECENT_NS)
+        recent = _newest((*stamps.recent, newest), now_ns)
         return replace(stamps, recent=recent, stepped_s=_step_s(stamps.ages, recent))
-    ages = _since((*stamps.ages, newest), now_ns - _KEPT_NS)
-    recent = _since(ages, now_ns - _RECENT_NS)
+    ages = tuple(one for one in (*stamps.ages, newest) if one[0] > now_ns - _KEPT_NS)
+    recent = _newest(ages, now_ns)
     earlier = ages[: len(ages) - len(recent)]
     stepped_s = _step_s(earlier, recent)
     if not stepped_s:
@@ -82,8 +82,9 @@ def _compare(stamps: FixStamps, newest: tuple[int, float]) -> FixStamps:
     return replace(stamps, ages=earlier, recent=recent, stepped_s=stepped_s, stepped_ns=now_ns)
 
 
-def _since(ages: Ages, begin_ns: int) -> Ages:
-    return tuple(one for one in ages if one[0] > begin_ns)
+def _newest(ages: Ages, now_ns: int) -> Ages:
+    """Return the ages of the last second, and of no fewer fixes than something is said of."""
+    return ages[-max(sum(at_ns > now_ns - _RECENT_NS for at_ns, _ in ages), _RECENT_MIN) :]
 
 
 def _step_s(earlier: Ages, recent: Ages) -> float:

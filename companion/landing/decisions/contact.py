@@ -129,7 +129,7 @@ def may_force_motors_off(
 
 
 def _is_road(seen_m: float, signs: Signs, config: TouchdownConfig) -> bool:
-    """Return whether a range finder sees the road beside a vehicle whose roof no error takes for it."""
+    """Return whether a range finder sees the road beside the vehicle; a low roof might be mistaken for it."""
     road_m, off_m = signs.road_below_m, config.range_finder.off_max_m
     return road_m is not None and road_m > 2.0 * off_m and abs(seen_m - road_m) < off_m
 
