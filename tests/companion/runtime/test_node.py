@@ -1,10 +1,7 @@
 """The node in bytes: what it sends to a PX4, and what no peer can make it do."""
 
 import math
-import re
-from typing import cast
 
-import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -13,7 +10,6 @@ from companion.autopilots.response import ResponseModel
 from companion.config.autopilot import AutopilotConfig
 from companion.config.companion import CompanionConfig
 from companion.situation.phases import Phase
-from companion.vehicle.estimator import DelayBuffer
 from link.errors import UserError
 from link.mavlink.dialect import Message, mavlink
 from link.messages import Command, Fix, FixVelocity, LandingStatus, PadGeometry, PadSighting, Plan, VehicleImu
@@ -21,30 +17,15 @@ from link.payloads import cdr, json_messages
 from link.records import replace
 from tests.companion.facts import changed
 from tests.companion.peer import KEYS, OFFBOARD, POSITION, FakePx4, Setup
+from tests.companion.runtime.setups import flying, ready
 from tests.link.mavlink.fake_autopilot import S
 
 ARM, SET_MODE = mavlink.MAV_CMD_COMPONENT_ARM_DISARM, mavlink.MAV_CMD_DO_SET_MODE
 
 
-def _ready() -> Setup:
-    setup = Setup()
-    setup.run(3.0)
-    assert setup.node.is_ready_to_start()
-    return setup
-
-
-def _flying() -> Setup:
-    setup = _ready()
-    setup.node.request(Command.START)
-    setup.run(3.0)
-    assert setup.autopilot.armed
-    assert setup.autopilot.custom_mode == OFFBOARD
-    return setup
-
-
 @pytest.mark.parametrize(("phase", "counts"), [(Phase.CHASE, True), (Phase.DESCEND, False), (Phase.TOUCHDOWN, False)])
 def test_limits_that_change_in_a_descent_count_after_it(phase: Phase, *, counts: bool) -> None:
-    setup = _ready()
+    setup = ready()
     node, before = setup.node, setup.node.inputs
     assert before is not None
     node.memory = replace(node.memory, progress=replace(node.memory.progress, phase=phase))
@@ -57,20 +38,9 @@ def test_limits_that_change_in_a_descent_count_after_it(phase: Phase, *, counts:
     assert (node.inputs.limits.speed_max_m_s == 3.0) is counts
 
 
-def test_fixes_that_come_long_after_their_stamps_forbid_a_landing_and_say_by_how_much() -> None:
-    setup = _ready()
-    for _ in range(20):
-        setup.fix(late_s=1.2)
-        setup.run(0.1)
-    assert setup.node.outputs is not None
-    status = setup.node.outputs.status
-    assert status.reason_code == "STAMPS_LATE"
-    assert status.reason.startswith("vehicle's fixes come 1.2 s after their stamps")
-
-
 @pytest.mark.slow
 def test_node_arms_changes_mode_and_streams_only_after_a_start() -> None:
-    setup = _ready()
+    setup = ready()
     setup.run(3.0, setup.fix)
     for command in (ARM, SET_MODE):
         assert not setup.autopilot.commands(command)
@@ -84,7 +54,7 @@ def test_node_arms_changes_mode_and_streams_only_after_a_start() -> None:
 
 @pytest.mark.slow
 def test_setpoints_come_at_the_step_rate_and_in_the_autopilots_time() -> None:
-    setup = _flying()
+    setup = flying()
     before = len(setup.autopilot.setpoints())
     setup.run(2.0)
     setpoints = setup.autopilot.setpoints()[before:]
@@ -97,7 +67,7 @@ def test_setpoints_come_at_the_step_rate_and_in_the_autopilots_time() -> None:
 
 @pytest.mark.slow
 def test_pilots_mode_change_silences_the_node() -> None:
-    setup = _flying()
+    setup = flying()
     setup.autopilot.custom_mode = POSITION
     setup.run(0.1)  # CURRENT_MODE comes at 20 Hz
     assert setup.node.phase is Phase.PILOT
@@ -125,55 +95,6 @@ def test_vehicle_that_is_no_multirotor_is_refused_by_name() -> None:
         setup.run(2.0)
 
 
-def test_fix_from_the_future_is_counted_and_dropped() -> None:
-    setup = _ready()
-    setup.fix(late_s=-1.0)
-    setup.run(0.1)
-    assert setup.node.bad_payloads == 1
-    assert setup.node.memory.vehicle.estimator is None
-    setup.fix(late_s=-0.3)
-    setup.run(0.1)
-    assert setup.node.bad_payloads == 1
-    assert setup.node.memory.vehicle.estimator is not None
-
-
-@pytest.mark.slow
-def test_late_and_swapped_fixes_leave_the_same_estimate() -> None:
-    places = [(float(x), 0.4, 1.5) for x in range(6)]
-
-    def fly(order: list[int]) -> np.ndarray:
-        setup = _ready()
-        for i in order:
-            setup.fix(places[i], late_s=1.0 - 0.1 * i)
-        setup.run(0.05)
-        memory = cast("DelayBuffer[object]", setup.node.memory.vehicle.estimator)
-        return np.array([entry.measurement.t_ns for entry in memory.entries])
-
-    np.testing.assert_array_equal(fly([0, 1, 2, 3, 4, 5]), fly([3, 0, 5, 1, 4, 2]))
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("set_by_s", [-37.0, -0.9, 0.7, 90.0])
-def test_flight_goes_on_evenly_when_utc_is_set(set_by_s: float) -> None:
-    setup = _flying()
-    setup.run(3.0)
-    phase, since_s, before = setup.node.phase, _in_phase_s(setup), len(setup.autopilot.setpoints())
-    setup.autopilot.utc_set_by_ns = round(set_by_s * S)
-    setup.run(4.0)
-    assert abs(setup.node.autopilot.session.clock.local_to_utc_ns(setup.t_ns) - setup.utc_ns) < S
-    assert setup.node.outputs is not None
-    assert abs(setup.node.outputs.status.stamp_ns - setup.utc_ns) < S
-    assert setup.node.outputs.status.relative_position_enu_m is None
-    assert setup.node.phase is phase
-    assert _in_phase_s(setup) == pytest.approx(since_s + 4.0, abs=0.3)
-    assert len(setup.autopilot.setpoints()) - before > 190
-
-
-def _in_phase_s(setup: Setup) -> float:
-    assert setup.node.inputs is not None
-    return (setup.node.inputs.monotonic_ns - setup.node.memory.progress.since_ns) * 1e-9
-
-
 @pytest.mark.slow
 def test_response_of_the_autopilot_is_made_anew_when_a_gain_changes_and_only_then() -> None:
     setup = Setup(autopilot=FakePx4(parameters={"MPC_XY_P": (0.8, mavlink.MAV_PARAM_TYPE_REAL32)}))
@@ -196,7 +117,7 @@ def _response(setup: Setup) -> ResponseModel:
 
 @pytest.mark.slow
 def test_local_frame_that_moves_in_flight_is_flown_on_in() -> None:
-    setup = _flying()
+    setup = flying()
     setup.autopilot.place_ned_m = (0.0, 0.0, -5.12)
     setup.run(5.0)
     asked = len(setup.autopilot.commands(mavlink.MAV_CMD_REQUEST_MESSAGE))
@@ -211,7 +132,7 @@ def test_local_frame_that_moves_in_flight_is_flown_on_in() -> None:
 
 @pytest.mark.slow
 def test_status_and_plan_are_published_and_can_be_read() -> None:
-    setup = _flying()
+    setup = flying()
     setup.node.take_publications()
     setup.run(1.0)
     published = setup.node.take_publications()
@@ -237,41 +158,15 @@ def test_node_that_nobody_listens_to_says_the_same_to_its_autopilot() -> None:
     assert len(said[0]) > 100
 
 
-@pytest.mark.parametrize("held_up_s", [0.6, 2.0])
-def test_what_waited_while_the_computer_was_held_up_is_not_from_the_future(held_up_s: float) -> None:
-    setup = _ready()
-    refused = setup.node.bad_payloads
-    setup.t_ns += round(held_up_s * S)
-    setup.fix((1.0, 2.0, 1.5))
-    setup.node.poll(setup.t_ns)
-    assert setup.node.inputs is not None
-    assert [one.t_ns for one in setup.node.inputs.vehicle.measurements] == [setup.utc_ns]
-    assert (setup.node.bad_payloads, setup.node.inputs.vehicle.fix_ahead_s) == (refused, None)
-
-
-def test_fixes_from_far_in_the_future_forbid_a_landing_and_say_by_how_much() -> None:
-    setup = _ready()
-    for _ in range(20):
-        setup.fix(late_s=-4.4)
-        setup.run(0.1)
-    assert setup.node.outputs is not None
-    status = setup.node.outputs.status
-    assert status.reason_code == "STAMPS_AHEAD"
-    found = re.search(r"come (\S+) s before", status.reason)
-    assert found is not None
-    assert float(found[1]) == pytest.approx(4.4, abs=0.05)  # taken by the next step
-    assert setup.node.vehicle.refused_lately().startswith("fix: 20 refused, come 4.4 s before their stamps")
-
-
 @pytest.mark.slow
 def test_pilot_reads_every_phase() -> None:
-    setup = _flying()
+    setup = flying()
     texts = [message.text for message in setup.autopilot.of_type("STATUSTEXT")]
     assert any("takeoff" in text for text in texts)
 
 
 def test_bad_payloads_are_counted_and_change_nothing() -> None:
-    setup = _ready()
+    setup = ready()
     for key in (KEYS.fix, KEYS.fix_velocity, KEYS.imu, KEYS.pad_pose):
         setup.node.receive_sample(key, b"\x00\x01\x00\x00nonsense")
     setup.run(0.1)
@@ -288,7 +183,7 @@ def test_pad_that_no_vehicle_has_is_counted_and_not_taken() -> None:
 
 
 def test_second_description_of_the_same_ship_costs_no_estimate() -> None:
-    setup = _ready()
+    setup = ready()
     ship = PadGeometry(size_m=(8.0, 8.0), height_m=6.0, antenna_to_pad_m=(0.0, 0.0, 0.0), is_afloat=True)
     setup.node.receive_pad(ship)
     setup.fix()
@@ -392,7 +287,7 @@ def _is_sound(message: Message) -> bool:
 def test_nothing_a_vehicle_says_makes_a_setpoint_absurd(
     samples: list[tuple[str, Fix | FixVelocity | VehicleImu | PadSighting]], lever: tuple[float, float, float]
 ) -> None:
-    setup = _flying()
+    setup = flying()
     setup.node.receive_pad(PadGeometry(size_m=(1.0, 1.0), height_m=1.5, antenna_to_pad_m=lever))
     setup.fix()
     setup.node.memory = changed(setup.node.memory, phase=Phase.CHASE)  # where the pad is followed
