@@ -10,7 +10,7 @@ import numpy as np
 
 from scenarios.tracks.clothoids import clothoid_road
 from scenarios.tracks.course import Course
-from scenarios.tracks.drive_config import DriveTrack
+from scenarios.tracks.drive_config import SHIFT_CURVATURE, DriveTrack
 from scenarios.tracks.heights import FLAT, grade_line
 from scenarios.tracks.profiles import Profile, profile_of
 from scenarios.tracks.roads import Road
@@ -18,8 +18,6 @@ from scenarios.tracks.suspension import STEP_S, Array, Driven, Surface, sway_of
 
 Stretch = tuple[float, float, float]
 Shift = tuple[float, float, float]
-SHIFT_CURVATURE = 8.0
-"""Of a shift by d over a length L the greatest curvature is this times d / L^2."""
 _SETTLING_S = 10.0  # behind the last leg: the slowest body has come to rest
 _SHAPE = ((0.0, 0.0), (0.25, 1.0), (0.75, -1.0), (1.0, 0.0))  # of a shift's curvature, over its length
 _SAME_PLACE_M = 1e-9

@@ -9,6 +9,8 @@ from link.program.toml_config import Ascending, NotNegative, Positive, StrictMod
 
 Waypoint = tuple[float, float]
 """East and north in W, m."""
+SHIFT_CURVATURE = 8.0
+"""Of a shift by d over a length L the greatest curvature is this times d / L^2 (`drive`)."""
 _CURVATURE_MAX_PER_M = 10.0  # beyond it a vehicle turns on the spot
 Curvature = Annotated[float, Field(ge=-_CURVATURE_MAX_PER_M, le=_CURVATURE_MAX_PER_M)]
 """1/m, positive to the left."""
@@ -70,7 +72,7 @@ class DriveTrack(StrictModel):
             if end_per_m != begin_per_m:
                 raise ValueError(f"the curvature jumps between stretches[{place}] and [{place + 1}]")
         for place, (_, length_m, left_m) in enumerate(self.shifts):
-            if 8.0 * abs(left_m) > _CURVATURE_MAX_PER_M * length_m**2:
+            if SHIFT_CURVATURE * abs(left_m) > _CURVATURE_MAX_PER_M * length_m**2:
                 raise ValueError(f"shifts[{place}] is too short for {left_m:g} m to the side")
         for place, ((before_m, _), (after_m, _)) in enumerate(pairwise(self.grades)):
             if after_m <= before_m:

@@ -11,7 +11,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 from scenarios.simulation.noise import Seed
-from scenarios.tracks.drive import SHIFT_CURVATURE, Shift
+from scenarios.tracks.drive import Shift
+from scenarios.tracks.drive_config import SHIFT_CURVATURE
 from scenarios.worlds.draws import Draws
 from scenarios.worlds.road import STEERING_MAX_PER_M_S, TURN_RADIUS_MIN_M, RoadPlan
 from scenarios.worlds.speed_plan import Grid, plan_speed
