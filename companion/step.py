@@ -17,7 +17,7 @@ from companion.landing.sortie.phases import over_deck
 from companion.landing.state.memory import ModelMemory, StepMemory, to_present_frame
 from companion.landing.state.step_data import StepInputs, StepOutputs, System
 from companion.landing.state.vehicle_update import place_by_deck, predict_pad, update_vehicle
-from companion.landing.steering.virtual_model import Ride, tracking_error_max_m, update_ride, update_tracking
+from companion.landing.steering.virtual_model import NO_RIDE, Ride, tracking_error_max_m, update_ride, update_tracking
 from companion.landing.touchdown.contact_forecast import update_forecast
 from companion.landing.transitions import take_events
 from companion.situation.phases import FOLLOWING_PHASES, LANDING_PHASES, NEAR_PHASES, STATION_PHASES, Phase
@@ -153,20 +153,20 @@ def _look(memory: StepMemory, situation: Situation, pad: PadPath | None, config:
         is_road_elsewhere=is_road_elsewhere(vehicle.is_road_elsewhere, phase, situation, config),
     )
     places = replace(memory.places, ground_enu_m=update_ground(memory.places.ground_enu_m, phase, situation))
-    model = replace(memory.model, ride=_ride(memory, situation, config))
+    ride = _ride(memory, situation, config)
+    model = memory.model if ride is memory.model.ride else replace(memory.model, ride=ride)
     return replace(memory, vehicle=vehicle, places=places, model=model)
 
 
 def _ride(memory: StepMemory, situation: Situation, config: CompanionConfig) -> Ride:
     """Return how high the drone flies on its setpoints; near the pad, which may hold it up, as it did before."""
     ride, relative, reference = memory.model.ride, situation.approach, memory.model.reference
-    if memory.progress.phase not in NEAR_PHASES | {Phase.TOUCHDOWN}:
-        return Ride()
-    if relative is None or reference is None or situation.drone is None or memory.progress.phase is Phase.TOUCHDOWN:
+    phase, drone = memory.progress.phase, situation.drone
+    if phase not in NEAR_PHASES:
+        return ride if phase is Phase.TOUCHDOWN else NO_RIDE
+    if relative is None or reference is None or drone is None or relative.height_m <= config.touchdown.height_max_m:
         return ride
-    if relative.height_m <= config.touchdown.height_max_m:
-        return ride
-    above_m = float(situation.drone.position_enu_m[2] - reference.position_enu_m[2])
+    above_m = float(drone.position_enu_m[2] - reference.position_enu_m[2])
     return update_ride(ride, situation.monotonic_ns, above_m)
 
 

@@ -21,7 +21,7 @@ from companion.integrity.stamps import FixStamps
 from companion.integrity.vehicle_data import Contradictions, CourseWatch
 from companion.landing.steering.flown_plan import FlownPlan
 from companion.landing.steering.sway import Sway
-from companion.landing.steering.virtual_model import Ride, Tracking
+from companion.landing.steering.virtual_model import NO_RIDE, Ride, Tracking
 from companion.planning.guidance import GuidanceMemory, ReferenceState
 from companion.situation.phases import Phase
 from companion.sortie.memory import SortieMemory, move_sortie
@@ -118,7 +118,7 @@ class ModelMemory(Struct, frozen=True, kw_only=True, eq=False):
     plan: FlownPlan | None = None
     guidance: GuidanceMemory | None = None
     tracking: Tracking = field(default_factory=Tracking)
-    ride: Ride = Ride()
+    ride: Ride = NO_RIDE
     sway: Sway = field(default_factory=Sway)
     yaw_setpoint_rad: float = 0.0
 

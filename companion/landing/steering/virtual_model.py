@@ -103,6 +103,9 @@ class Ride(Struct, frozen=True, kw_only=True):
     t_ns: int | None = None
 
 
+NO_RIDE = Ride()
+
+
 def update_ride(ride: Ride, t_ns: int, above_m: float) -> Ride:
     """Return the ride after a comparison at the monotonic `t_ns`; the first is all that is known."""
     above_m = min(max(above_m, -_RIDE_MAX_M), _RIDE_MAX_M)

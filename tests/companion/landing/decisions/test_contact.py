@@ -146,6 +146,13 @@ def test_drone_that_slides_off_the_pad_while_it_is_pressed_down_is_switched_off(
     assert not may_force_motors_off(signs_of(changed(beside, reference=reference_at(0.0))), 0.0, CONFIG)
 
 
+@pytest.mark.parametrize(("sunk_m", "expected"), [(0.05, Verdict.AIRBORNE), (0.07, Verdict.CONTACT)])
+@pytest.mark.parametrize("rides_m", [-0.1, 0.0, 0.1])
+def test_setpoint_has_to_sink_beyond_how_the_drone_flew_on_it(rides_m: float, sunk_m: float, expected: Verdict) -> None:
+    facts = changed(on_pad(), reference=reference_at(-rides_m - sunk_m), rides_m=rides_m)
+    assert verdict(signs_of(facts), CONFIG) is expected
+
+
 @pytest.mark.parametrize("landed", [None, False, True])
 @pytest.mark.parametrize("range_height_m", [None, 0.05])
 def test_range_finder_and_autopilots_word_are_not_needed(landed: bool | None, range_height_m: float | None) -> None:

@@ -8,10 +8,12 @@ import pytest
 from companion.autopilots.px4 import Px4Driver
 from companion.core.data import GRAVITY_M_S2, OwnState
 from companion.landing.steering.virtual_model import (
+    NO_RIDE,
     Tracking,
     add_to_past,
     press_down,
     setpoint_at,
+    update_ride,
     update_tracking,
 )
 from companion.planning.guidance import ReferenceState
@@ -126,3 +128,16 @@ def test_model_that_is_pressed_falls_as_if_nothing_held_it() -> None:
     np.testing.assert_allclose(level.position_enu_m - pressed.position_enu_m, [0.0, 0.0, 0.5 * 9.0 * 0.13**2])
     np.testing.assert_allclose(pressed.velocity_enu_m_s, [5.0, 0.0, -9.0 * 0.13])
     np.testing.assert_allclose(pressed.acceleration_enu_m_s2, [0.0, 0.0, -9.0])
+
+
+def test_ride_is_the_first_comparison_and_goes_over_to_later_ones_within_half_a_second() -> None:
+    ride = update_ride(NO_RIDE, 0, 0.1)
+    assert ride.above_m == 0.1
+    for step in range(1, 26):
+        ride = update_ride(ride, step * STEP_NS, -0.1)
+    assert ride.above_m == pytest.approx(-0.1 + 0.2 * math.exp(-1.0))
+
+
+@pytest.mark.parametrize("above_m", [-3.0, 3.0])
+def test_ride_is_no_more_than_a_lag_makes(above_m: float) -> None:
+    assert abs(update_ride(NO_RIDE, 0, above_m).above_m) == pytest.approx(0.3 * 0.5)
