@@ -20,17 +20,9 @@ from companion.landing.state.vehicle_update import place_by_deck, predict_pad, u
 from companion.landing.steering.virtual_model import NO_RIDE, Ride, tracking_error_max_m, update_ride, update_tracking
 from companion.landing.touchdown.contact_forecast import update_forecast
 from companion.landing.transitions import take_events
+from companion.situation.own_drone import drone_now, lowest_foot, range_carried_m, range_height_m
 from companion.situation.phases import FOLLOWING_PHASES, LANDING_PHASES, NEAR_PHASES, STATION_PHASES, Phase
-from companion.situation.situation import (
-    Below,
-    Following,
-    Situation,
-    VehicleNews,
-    drone_now,
-    range_carried_m,
-    range_height_m,
-    with_pad,
-)
+from companion.situation.situation import Below, Following, Situation, VehicleNews, with_pad
 from companion.vehicle.pad import PadPath
 from link.frames.rotations import yaw_of
 from link.records import replace
@@ -167,7 +159,8 @@ def _ride(memory: StepMemory, situation: Situation, config: CompanionConfig) -> 
     if relative is None or reference is None or drone is None or relative.height_m <= config.touchdown.height_max_m:
         return ride
     above_m = float(drone.position_enu_m[2] - reference.position_enu_m[2])
-    return update_ride(ride, situation.monotonic_ns, above_m)
+    foot_below_m, _ = lowest_foot(drone, config.touchdown)
+    return update_ride(ride, situation.monotonic_ns, above_m, foot_below_m)
 
 
 def _drive(
@@ -210,7 +203,7 @@ def _desire(memory: StepMemory, situation: Situation, config: CompanionConfig) -
             # Without accelerations in its setpoints an autopilot is not pressed down so hard that it would fall.
             held_up = holds(HELD_UP, progress.held, situation, config) and not config.setpoints.position_only
             evidence = may_force_motors_off(
-                signs_of(situation),
+                signs_of(situation, config.touchdown),
                 _in_phase_s(memory, situation),
                 config,
                 stopped_and_held=progress.stopped_by_pad and held_up,

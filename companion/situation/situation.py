@@ -2,21 +2,15 @@
 
 import math
 
-import numpy as np
 from msgspec import Struct, structs
 
 from companion.autopilots.driver import AutopilotView
 from companion.config.landing import ChaseConfig
-from companion.core.data import Array, FlightLimits, OwnState, RangeReading, Rival
+from companion.core.data import Array, FlightLimits, Rival
 from companion.planning.guidance import ReferenceState
 from companion.vehicle.pad import PadPath
-from link.frames.rotations import rotate
 from link.messages import ContactForecast, Vector3
 from link.records import replace
-
-_RANGE_AGE_MAX_S = 0.3
-_LAST_SEEN_AGE_MAX_S = 3.0  # own heights wander by some millimetres a second
-_UPRIGHT_MIN = 0.5  # cosine of a tilt beyond which a range finder does not look down
 
 
 class Drone(Struct, frozen=True, kw_only=True, eq=False):
@@ -30,6 +24,7 @@ class Drone(Struct, frozen=True, kw_only=True, eq=False):
         acceleration_up_m_s2: from the last reports, None before there are enough.
         jolt_m_s2: size of the horizontal acceleration, likewise.
         lean: sine of its tilt.
+        lean_rate_hz: by which that grows.
         attitude_known: no older than a report may be.
     """
 
@@ -40,6 +35,7 @@ class Drone(Struct, frozen=True, kw_only=True, eq=False):
     acceleration_up_m_s2: float | None = None
     jolt_m_s2: float | None = None
     lean: float = 0.0
+    lean_rate_hz: float = 0.0
     attitude_known: bool = True
 
 
@@ -105,7 +101,7 @@ class Following(Struct, frozen=True, kw_only=True):
         error_max_m: of one that follows them as its autopilot does in gusts over this link.
         reference: the virtual model that they follow.
         late_s: after which most have come: the link's mean delay and its standard deviation.
-        rides_m: the drone above the virtual model, as it flew when it could touch nothing.
+        rides_m: the lowest foot above that of a level drone on the virtual model, when it could touch nothing.
     """
 
     error_m: float
@@ -179,58 +175,6 @@ def _approach(drone: Drone, pad: PadPath, feet_offset_m: float) -> Approach:
 def with_pad(situation: Situation, pad: PadPath | None) -> Situation:
     """Return the facts with another pad."""
     return replace(situation, pad=pad)
-
-
-def drone_now(own: OwnState | None, t_ns: int, yaw_rad: float, age_max_s: float) -> Drone | None:
-    """Return the drone at `t_ns`, carried forward at its reported velocity; None when the report is too old."""
-    if own is None:
-        return None
-    age_s = (t_ns - own.t_ns) * 1e-9
-    if abs(age_s) > age_max_s:
-        return None
-    velocity = np.array(own.velocity_enu_m_s)
-    position = np.array(own.position_enu_m) + velocity * age_s
-    return Drone(
-        position_enu_m=position,
-        velocity_enu_m_s=velocity,
-        yaw_rad=yaw_rad,
-        age_s=age_s,
-        acceleration_up_m_s2=own.acceleration_up_m_s2,
-        jolt_m_s2=own.jolt_m_s2,
-        attitude_known=age_s + own.attitude_age_s <= age_max_s,
-        lean=math.hypot(*rotate(own.orientation_wxyz, (0.0, 0.0, 1.0))[:2]),
-    )
-
-
-def range_height_m(own: OwnState | None, seen: RangeReading | None, sensor_height_m: float, t_ns: int) -> float | None:
-    """Return the height of the drone's feet above what its range finder sees below.
-
-    Args:
-        own: the drone's newest report, for its tilt.
-        seen: the newest reading.
-        sensor_height_m: of the range finder above the feet.
-        t_ns: now.
-    """
-    if own is None or seen is None or abs(t_ns - seen.t_ns) * 1e-9 > _RANGE_AGE_MAX_S:
-        return None
-    _, _, upright = rotate(own.orientation_wxyz, (0.0, 0.0, 1.0))
-    return seen.distance_m * upright - sensor_height_m if upright > _UPRIGHT_MIN else None
-
-
-def range_carried_m(drone: Drone | None, seen: RangeReading | None, sensor_height_m: float, t_ns: int) -> float | None:
-    """Return the last height of the drone's feet that was seen, less what the drone has sunk since.
-
-    A range finder sees nothing nearer than its range begins, and where the drone stands it may never see again.
-
-    Args:
-        drone: now.
-        seen: the last reading within the range.
-        sensor_height_m: of the range finder above the feet.
-        t_ns: now.
-    """
-    if drone is None or seen is None or seen.own is None or abs(t_ns - seen.t_ns) * 1e-9 > _LAST_SEEN_AGE_MAX_S:
-        return None
-    return seen.distance_m - sensor_height_m + float(drone.position_enu_m[2]) - seen.own.position_enu_m[2]
 
 
 def vehicle_stands(situation: Situation, config: ChaseConfig) -> bool:

@@ -117,25 +117,27 @@ _STANDING = frozenset({Phase.TOUCHDOWN})
 
 def is_in_contact(s: Situation, c: CompanionConfig) -> bool:
     """Return whether every sign of a contact agrees now, however short it has been."""
-    return verdict(signs_of(s), c) is Verdict.CONTACT
+    return verdict(signs_of(s, c.touchdown), c) is Verdict.CONTACT
 
 
 def _is_in_hard_contact(s: Situation, c: CompanionConfig) -> bool:
     """Return whether what was touched stops the drone: a moment later the pad may be gone."""
     jolt_m_s2 = None if s.drone is None else s.drone.jolt_m_s2
-    return jolt_m_s2 is not None and jolt_m_s2 > c.touchdown.jolt_m_s2 and is_stopped_by_pad(signs_of(s), c)
+    return (
+        jolt_m_s2 is not None and jolt_m_s2 > c.touchdown.jolt_m_s2 and is_stopped_by_pad(signs_of(s, c.touchdown), c)
+    )
 
 
 def _is_in_disputed_contact(s: Situation, c: CompanionConfig) -> bool:
-    return verdict(signs_of(s), c) in {Verdict.CONTACT, Verdict.DISPUTED}
+    return verdict(signs_of(s, c.touchdown), c) in {Verdict.CONTACT, Verdict.DISPUTED}
 
 
 def _is_at_edge(s: Situation, c: CompanionConfig) -> bool:
-    return verdict(signs_of(s), c) is Verdict.AT_EDGE
+    return verdict(signs_of(s, c.touchdown), c) is Verdict.AT_EDGE
 
 
 def _is_held_up(s: Situation, c: CompanionConfig) -> bool:
-    return does_not_fall(signs_of(s), c)
+    return does_not_fall(signs_of(s, c.touchdown), c)
 
 
 def _is_lifted(s: Situation, c: CompanionConfig) -> bool:
@@ -159,11 +161,11 @@ def _late_s(s: Situation) -> float:
 
 def trial_press(s: Situation, c: CompanionConfig) -> float:
     """Return how hard the drone may be pressed down to see whether it stands, m/s^2."""
-    return trial_press_m_s2(signs_of(s), _late_s(s), c.touchdown)
+    return trial_press_m_s2(signs_of(s, c.touchdown), _late_s(s), c.touchdown)
 
 
 def _trial_s(s: Situation, c: CompanionConfig) -> float:
-    return trial_s(signs_of(s), trial_press(s, c), _late_s(s), c.touchdown)
+    return trial_s(signs_of(s, c.touchdown), trial_press(s, c), _late_s(s), c.touchdown)
 
 
 TOUCHED = Condition(
@@ -171,7 +173,7 @@ TOUCHED = Condition(
     phases=_DESCENT,
     is_true=is_in_contact,
     hold_s=_trial_s,
-    cause=lambda s, _: Cause(Reason.CONTACT, (signs_text(signs_of(s)),)),
+    cause=lambda s, c: Cause(Reason.CONTACT, (signs_text(signs_of(s, c.touchdown)),)),
 )
 """Every sign of a contact agrees."""
 
@@ -180,7 +182,7 @@ TOUCHED_BY_DISPUTE = Condition(
     phases=_DESCENT,
     is_true=_is_in_disputed_contact,
     hold_s=lambda _, c: c.touchdown.range_finder.disputed_hold_s,
-    cause=lambda s, _: Cause(Reason.DISPUTED_CONTACT, (signs_text(signs_of(s)),)),
+    cause=lambda s, c: Cause(Reason.DISPUTED_CONTACT, (signs_text(signs_of(s, c.touchdown)),)),
 )
 """All but the range finder's."""
 
@@ -188,7 +190,7 @@ STOPPED_BY_PAD = Condition(
     reason=Reason.HARD_CONTACT,
     phases=_DESCENT,
     is_true=_is_in_hard_contact,
-    cause=lambda s, _: Cause(Reason.HARD_CONTACT, (signs_text(signs_of(s)),)),
+    cause=lambda s, c: Cause(Reason.HARD_CONTACT, (signs_text(signs_of(s, c.touchdown)),)),
 )
 """What stops the drone ends its commitment to land as well: this is asked before the conditions that abort."""
 

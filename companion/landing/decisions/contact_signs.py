@@ -4,6 +4,8 @@ import math
 
 from msgspec import Struct
 
+from companion.config.touchdown import TouchdownConfig
+from companion.situation.own_drone import lowest_foot
 from companion.situation.situation import Approach, Situation
 
 _JOLT_S = 0.06  # three reports at 50 Hz
@@ -15,9 +17,9 @@ class Signs(Struct, frozen=True, kw_only=True):
     Attributes:
         height_m: of the feet above the pad, by the estimates of drone and vehicle.
         distance_m: horizontal, from the pad's centre.
-        climb_m_s: upwards against the pad.
+        climb_m_s: of the lowest foot, upwards against the pad.
         acceleration_up_m_s2: of the drone.
-        setpoint_below_m: how far the setpoint has sunk below the drone, beyond how it flew before.
+        setpoint_below_m: how far the setpoint has sunk below the lowest foot, beyond how it flew before.
         range_height_m: of the feet above what the range finder sees.
         range_carried_m: likewise, from when it last saw something, by what the drone has sunk since.
         landed: the autopilot's own word.
@@ -41,19 +43,20 @@ class Signs(Struct, frozen=True, kw_only=True):
     sink_left_m_s: float = math.inf
 
 
-def signs_of(s: Situation) -> Signs:
+def signs_of(s: Situation, touchdown: TouchdownConfig) -> Signs:
     """Return the signs in a step's facts."""
     relative = s.approach
     drone, reference = s.drone, s.following.reference
+    foot_below_m, foot_sinks_m_s = lowest_foot(drone, touchdown)
     above = None if drone is None or reference is None else drone.position_enu_m[2] - reference.position_enu_m[2]
     return Signs(
         height_m=None if relative is None else relative.height_m,
         distance_m=relative.distance_m
         if relative is not None and s.pad is not None and s.pad.unplaced is None
         else None,
-        climb_m_s=None if relative is None else relative.climb_m_s,
+        climb_m_s=None if relative is None else relative.climb_m_s - foot_sinks_m_s,
         acceleration_up_m_s2=None if drone is None else drone.acceleration_up_m_s2,
-        setpoint_below_m=None if above is None else float(above) - s.following.rides_m,
+        setpoint_below_m=None if above is None else float(above) - foot_below_m - s.following.rides_m,
         range_height_m=s.below.range_height_m,
         landed=s.autopilot.landed,
         range_carried_m=s.below.range_carried_m,

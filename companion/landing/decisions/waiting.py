@@ -8,6 +8,7 @@ from companion.landing.decisions.aborts import must_wait
 from companion.landing.state.memory import Progress, StepMemory
 from companion.landing.steering.sway import is_swaying
 from companion.landing.steering.targets import changes_speed
+from companion.situation.own_drone import lowest_foot
 from companion.situation.phases import Phase
 from companion.situation.situation import Approach, Situation
 from link.messages import ContactForecast
@@ -134,7 +135,7 @@ def waits_for_calm(memory: StepMemory, situation: Situation, config: CompanionCo
     relative, drone = situation.approach, situation.drone
     if memory.progress.phase is not Phase.DESCEND or relative is None or drone is None:
         return False
-    lowest_m = relative.height_m - config.touchdown.foot_radius_m * drone.lean
+    lowest_m = relative.height_m - lowest_foot(drone, config.touchdown)[0]
     return lowest_m > config.descent.sway.height_min_m and is_swaying(
         memory.model.sway, situation.monotonic_ns, config.descent.sway
     )

@@ -95,7 +95,8 @@ class Ride(Struct, frozen=True, kw_only=True):
     """How the drone flies on its setpoints: always a little above or below them, by lags and by wind.
 
     Attributes:
-        above_m: the drone above the model, a mean of the last half second in which it could touch nothing.
+        above_m: the drone's lowest foot above that of a level one on the model, a mean of the last half second in which
+            it could touch nothing.
         t_ns: monotonic, of the newest comparison.
     """
 
@@ -106,9 +107,16 @@ class Ride(Struct, frozen=True, kw_only=True):
 NO_RIDE = Ride()
 
 
-def update_ride(ride: Ride, t_ns: int, above_m: float) -> Ride:
-    """Return the ride after a comparison at the monotonic `t_ns`; the first is all that is known."""
-    above_m = min(max(above_m, -_RIDE_MAX_M), _RIDE_MAX_M)
+def update_ride(ride: Ride, t_ns: int, above_m: float, foot_below_m: float) -> Ride:
+    """Return the ride after a comparison at the monotonic `t_ns`; the first is all that is known.
+
+    Args:
+        ride: so far.
+        t_ns: monotonic.
+        above_m: the drone above the model.
+        foot_below_m: its lowest foot below those of a level drone.
+    """
+    above_m = min(max(above_m, -_RIDE_MAX_M), _RIDE_MAX_M) - foot_below_m
     if ride.t_ns is None:
         return Ride(above_m=above_m, t_ns=t_ns)
     share = -math.expm1(-min((t_ns - ride.t_ns) * 1e-9, STEP_MAX_S) / _RIDE_MEAN_S)

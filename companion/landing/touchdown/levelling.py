@@ -12,6 +12,7 @@ from companion.core.data import Array, FlightLimits
 from companion.landing.state.memory import StepMemory
 from companion.landing.state.step_data import StepInputs
 from companion.planning.guidance import PlanRequest
+from companion.situation.own_drone import lowest_foot
 from companion.situation.phases import Phase
 from companion.situation.situation import Approach, Situation
 from companion.vehicle.pad import PadPath
@@ -78,12 +79,11 @@ def limit_tilt(request: PlanRequest, air_enu_m_s2: Array) -> FlightLimits:
 
 def lowest_foot_m(situation: Situation, relative: Approach, config: CompanionConfig) -> float:
     """Return how high the lowest foot of a leaning drone is above the pad, by a range finder that has just seen it."""
-    lean = 0.0 if situation.drone is None else situation.drone.lean
     seen_m, height_m = situation.below.range_carried_m, relative.height_m
     is_over = relative.distance_m < over_pad_radius_m(relative.pad_half_width_m, config)
     if situation.below.range_height_m is not None and seen_m is not None and is_over:
         height_m = seen_m if abs(seen_m - height_m) < _SEEN_OFF_MAX_M else height_m
-    return height_m - config.touchdown.foot_radius_m * lean
+    return height_m - lowest_foot(situation.drone, config.touchdown)[0]
 
 
 def _kept_m_s2(turns_m_s2: float, jerk_m_s3: float, config: CompanionConfig) -> float:

@@ -7,7 +7,8 @@ from hypothesis import strategies as st
 
 from companion.autopilots.px4 import Px4Driver
 from companion.autopilots.state import AutopilotState, update_state
-from companion.situation.situation import Drone, range_carried_m
+from companion.situation.own_drone import range_carried_m
+from companion.situation.situation import Drone
 from link.mavlink.clock_map import ClockMap, RoundTrip, with_round_trip, with_system_time
 from link.mavlink.dialect import Message, mavlink
 from link.records import replace

@@ -47,14 +47,14 @@ def test_all_that_is_taken_for_a_small_pad_lies_on_it(half_width_m: float, heigh
 @pytest.mark.parametrize(("width_m", "expected"), [(1.5, Verdict.CONTACT), (SMALL_M, Verdict.AIRBORNE)])
 def test_what_is_beside_a_small_pad_is_no_contact_with_it(width_m: float, expected: Verdict) -> None:
     facts = standing(0.3, width_m)
-    assert verdict(signs_of(facts), CONFIG) is expected
+    assert verdict(signs_of(facts, CONFIG.touchdown), CONFIG) is expected
     relative = facts.approach
     assert relative is not None
     assert is_over_pad(relative, CONFIG) is (expected is Verdict.CONTACT)
 
 
 def test_middle_of_a_small_pad_is_a_contact() -> None:
-    assert verdict(signs_of(standing(0.1, SMALL_M)), CONFIG) is Verdict.CONTACT
+    assert verdict(signs_of(standing(0.1, SMALL_M), CONFIG.touchdown), CONFIG) is Verdict.CONTACT
 
 
 def test_small_pad_has_to_be_seen_more_exactly() -> None:

@@ -87,7 +87,7 @@ def on_pad() -> Situation:
 @given(facts=airborne(), source=st.sampled_from(SOURCES), value=ABSURD)
 def test_no_single_faulty_source_makes_a_contact_in_the_air(facts: Situation, source: str, value: float) -> None:
     with np.errstate(all="ignore"):
-        signs = signs_of(with_fault(facts, source, value))
+        signs = signs_of(with_fault(facts, source, value), TOUCHDOWN)
         assert verdict(signs, CONFIG) is Verdict.AIRBORNE
         assert not may_force_motors_off(signs, LONG_S, CONFIG)
 
@@ -101,7 +101,7 @@ def test_no_source_stuck_at_what_it_says_on_the_pad_makes_a_contact_in_the_air(
     # The most treacherous value is the one that a contact has; it is drawn from close around it.
     contact = {"own height": 1.5 + GEAR_M, "pad height": facts_height(facts), "setpoint": facts_height(facts) - 0.3}
     value = contact.get(source, 0.0) + data.draw(st.floats(-0.3, 0.3))
-    signs = signs_of(with_fault(facts, source, value))
+    signs = signs_of(with_fault(facts, source, value), TOUCHDOWN)
     assert verdict(signs, CONFIG) is Verdict.AIRBORNE
     assert not may_force_motors_off(signs, LONG_S, CONFIG)
 
@@ -113,7 +113,7 @@ def facts_height(facts: Situation) -> float:
 
 
 def test_drone_that_stands_on_the_pad_is_in_contact_and_may_be_switched_off() -> None:
-    signs = signs_of(on_pad())
+    signs = signs_of(on_pad(), TOUCHDOWN)
     assert verdict(signs, CONFIG) is Verdict.CONTACT
     assert may_force_motors_off(signs, 0.0, CONFIG)
 
@@ -134,23 +134,32 @@ def test_drone_that_sinks_as_fast_as_it_may_onto_a_deck_that_falls_as_fast_is_no
     pad = pad_at((4.0, 1.0, -1.45))
     facts = replace(on_pad(), drone=drone_at(0.0, 0.1, pad=pad), pad=pad)
     limits = replace(CONFIG.limits.flight_limits(), descent_max_m_s=descent_max_m_s)
-    signs = signs_of(changed(facts, limits=limits, range_height_m=range_height_m))
+    signs = signs_of(changed(facts, limits=limits, range_height_m=range_height_m), TOUCHDOWN)
     assert verdict(signs, CONFIG) is expected
 
 
 def test_drone_that_slides_off_the_pad_while_it_is_pressed_down_is_switched_off() -> None:
     facts = on_pad()
     beside = changed(facts, drone=drone_at(0.0, 2.0 * over_pad_radius_m(pad_at().half_width_m, CONFIG), pad=pad_at()))
-    assert verdict(signs_of(beside), CONFIG) is Verdict.AIRBORNE
-    assert may_force_motors_off(signs_of(beside), 0.0, CONFIG)
-    assert not may_force_motors_off(signs_of(changed(beside, reference=reference_at(0.0))), 0.0, CONFIG)
+    assert verdict(signs_of(beside, TOUCHDOWN), CONFIG) is Verdict.AIRBORNE
+    assert may_force_motors_off(signs_of(beside, TOUCHDOWN), 0.0, CONFIG)
+    assert not may_force_motors_off(signs_of(changed(beside, reference=reference_at(0.0)), TOUCHDOWN), 0.0, CONFIG)
+
+
+@pytest.mark.parametrize(("lean_rate_hz", "expected"), [(0.0, Verdict.AIRBORNE), (-1.5, Verdict.CONTACT)])
+def test_drone_that_the_pad_brings_upright_sinks_and_stands_on_its_lowest_foot(
+    lean_rate_hz: float, expected: Verdict
+) -> None:
+    leaning = replace(drone_at(0.05, 0.1, (0.0, 0.0, -0.3), pad=pad_at()), lean=0.3, lean_rate_hz=lean_rate_hz)
+    facts = changed(on_pad(), drone=leaning)
+    assert verdict(signs_of(facts, TOUCHDOWN), CONFIG) is expected
 
 
 @pytest.mark.parametrize(("sunk_m", "expected"), [(0.05, Verdict.AIRBORNE), (0.07, Verdict.CONTACT)])
 @pytest.mark.parametrize("rides_m", [-0.1, 0.0, 0.1])
 def test_setpoint_has_to_sink_beyond_how_the_drone_flew_on_it(rides_m: float, sunk_m: float, expected: Verdict) -> None:
     facts = changed(on_pad(), reference=reference_at(-rides_m - sunk_m), rides_m=rides_m)
-    assert verdict(signs_of(facts), CONFIG) is expected
+    assert verdict(signs_of(facts, TOUCHDOWN), CONFIG) is expected
 
 
 @pytest.mark.parametrize("landed", [None, False, True])
@@ -158,11 +167,11 @@ def test_setpoint_has_to_sink_beyond_how_the_drone_flew_on_it(rides_m: float, su
 def test_range_finder_and_autopilots_word_are_not_needed(landed: bool | None, range_height_m: float | None) -> None:
     facts = on_pad()
     facts = changed(facts, range_height_m=range_height_m, autopilot=replace(facts.autopilot, landed=landed))
-    assert verdict(signs_of(facts), CONFIG) is Verdict.CONTACT
+    assert verdict(signs_of(facts, TOUCHDOWN), CONFIG) is Verdict.CONTACT
 
 
 def test_range_finder_that_sees_the_pad_far_below_puts_off_the_forced_disarm() -> None:
-    signs = signs_of(changed(on_pad(), range_height_m=TOUCHDOWN.range_finder.contact_height_max_m + 0.01))
+    signs = signs_of(changed(on_pad(), range_height_m=TOUCHDOWN.range_finder.contact_height_max_m + 0.01), TOUCHDOWN)
     assert verdict(signs, CONFIG) is Verdict.DISPUTED
     assert not may_force_motors_off(signs, TOUCHDOWN.range_finder.disputed_hold_s - 0.01, CONFIG)
     assert may_force_motors_off(signs, TOUCHDOWN.range_finder.disputed_hold_s, CONFIG)
@@ -185,7 +194,7 @@ def test_range_finder_that_sees_the_road_beside_the_vehicle_says_where_the_drone
     facts = changed(on_pad(), range_height_m=seen_m)
     assert facts.pad is not None
     pad = replace(facts.pad, height_m=roof_m, mounting=replace(facts.pad.mounting, is_afloat=is_afloat))
-    signs = signs_of(replace(facts, pad=pad))
+    signs = signs_of(replace(facts, pad=pad), TOUCHDOWN)
     assert verdict(signs, CONFIG) is expected
     assert may_force_motors_off(signs, LONG_S, CONFIG) is (expected is not Verdict.AT_EDGE)
 
@@ -207,7 +216,7 @@ def test_pressed_drone_whose_speeds_are_known_badly_is_switched_off_where_the_ra
     climb_m_s: float, range_height_m: float | None, since_s: float, *, is_forced: bool
 ) -> None:
     drone = drone_at(0.0, 0.0, (0.0, 0.0, climb_m_s), pad=pad_at())
-    signs = signs_of(changed(on_pad(), drone=drone, range_height_m=range_height_m))
+    signs = signs_of(changed(on_pad(), drone=drone, range_height_m=range_height_m), TOUCHDOWN)
     assert verdict(signs, CONFIG) is Verdict.AIRBORNE
     assert may_force_motors_off(signs, since_s, CONFIG) is is_forced
     assert not may_force_motors_off(signs, since_s, configured({"setpoints": {"position_only": True}}))
@@ -233,14 +242,14 @@ def test_pressed_drone_whose_speeds_are_known_badly_is_switched_off_where_the_ra
     ids=["too high", "beside", "sinking", "falling", "setpoint above", "own unknown", "pad unknown", "heading unknown"],
 )
 def test_contact_lacks_one_of_its_signs(facts: Situation) -> None:
-    assert verdict(signs_of(facts), CONFIG) is Verdict.AIRBORNE
+    assert verdict(signs_of(facts, TOUCHDOWN), CONFIG) is Verdict.AIRBORNE
 
 
 def test_drone_as_deep_below_the_pad_as_no_press_brings_it_is_in_no_contact() -> None:
     deepest_m = DESCENT.sink.press_depth_m + TOUCHDOWN.height_max_m
     for depth_m, expected in ((deepest_m - 0.01, Verdict.CONTACT), (deepest_m + 0.01, Verdict.AIRBORNE)):
         facts = changed(on_pad(), drone=drone_at(-depth_m, pad=pad_at()), reference=reference_at(-depth_m - 0.3))
-        assert verdict(signs_of(facts), CONFIG) is expected
+        assert verdict(signs_of(facts, TOUCHDOWN), CONFIG) is expected
 
 
 @pytest.mark.parametrize(
@@ -251,29 +260,31 @@ def test_setpoint_far_enough_below_or_the_autopilots_word_supports_a_contact(
 ) -> None:
     facts = changed(on_pad(), reference=reference_at(-sunk_m))
     facts = replace(facts, autopilot=replace(facts.autopilot, landed=landed))
-    assert (verdict(signs_of(facts), CONFIG) is Verdict.CONTACT) is expected
+    assert (verdict(signs_of(facts, TOUCHDOWN), CONFIG) is Verdict.CONTACT) is expected
 
 
 def test_forced_disarm_after_a_stop_by_the_pad_asks_for_its_height_and_nothing_else() -> None:
     moving = drone_at(DESCENT.commit_height_m - 0.01, 3.0, (0.0, 0.0, -2.0), pad=pad_at())
     higher = replace(moving, position_enu_m=moving.position_enu_m + np.array([0.0, 0.0, 0.02]))
     for drone, pad, expected in ((moving, pad_at(), True), (higher, pad_at(), False), (moving, None, False)):
-        signs = signs_of(replace(on_pad(), drone=drone, pad=pad))
+        signs = signs_of(replace(on_pad(), drone=drone, pad=pad), TOUCHDOWN)
         assert may_force_motors_off(signs, 0.0, CONFIG, stopped_and_held=True) is expected
 
 
 def test_decision_is_described_by_its_signs() -> None:
-    assert signs_text(signs_of(on_pad())) == (
+    assert signs_text(signs_of(on_pad(), TOUCHDOWN)) == (
         "0.00 m over the pad, 0.25 m above the setpoint, 0.00 m/s up, 0.01 m by range finder, autopilot not landed"
     )
     drone = replace(drone_at(-0.02, 0.0, (0.0, 0.0, 0.11), pad=pad_at()), acceleration_up_m_s2=-0.25)
     facts = replace(on_pad(), drone=drone, autopilot=replace(on_pad().autopilot, landed=True))
-    assert "0.11 m/s up, -0.25 m/s2 up, 0.01 m by range finder, autopilot landed" in signs_text(signs_of(facts))
+    assert "0.11 m/s up, -0.25 m/s2 up, 0.01 m by range finder, autopilot landed" in signs_text(
+        signs_of(facts, TOUCHDOWN)
+    )
     unknown = replace(on_pad(), drone=None, autopilot=replace(on_pad().autopilot, landed=None))
-    assert signs_text(signs_of(unknown)) == "0.01 m by range finder"
+    assert signs_text(signs_of(unknown, TOUCHDOWN)) == "0.01 m by range finder"
 
 
 def test_description_has_no_minus_before_a_zero() -> None:
-    text = signs_text(replace(signs_of(on_pad()), range_height_m=-0.001, climb_m_s=-0.014))
+    text = signs_text(replace(signs_of(on_pad(), TOUCHDOWN), range_height_m=-0.001, climb_m_s=-0.014))
     assert "-0.01 m/s up, " in text
     assert ", 0.00 m by range finder" in text

@@ -84,15 +84,15 @@ def test_drone_has_passed_the_pad_as_near_as_its_way_since_the_jolt_came(
 ) -> None:
     drone = drone_at(0.1, x_m, (vx_m_s, vy_m_s, 0.0), pad=pad_at())
     drone = replace(drone, position_enu_m=drone.position_enu_m + np.array([0.0, y_m, 0.0]), age_s=age_s)
-    passed_m = signs_of(replace(situation(), drone=drone)).passed_m
+    passed_m = signs_of(replace(situation(), drone=drone), CONFIG.touchdown).passed_m
     ago_s = np.linspace(0.0, max(JOLT_S + age_s, 0.0), 2001)
     way_m = np.hypot(x_m - vx_m_s * ago_s, y_m - vy_m_s * ago_s)
     assert passed_m == pytest.approx(way_m.min(), abs=0.002)
 
 
 def test_where_it_passed_is_not_known_without_a_place() -> None:
-    assert signs_of(replace(situation(), pad=None)).passed_m is None
-    assert signs_of(replace(situation(), drone=None)).passed_m is None
+    assert signs_of(replace(situation(), pad=None), CONFIG.touchdown).passed_m is None
+    assert signs_of(replace(situation(), drone=None), CONFIG.touchdown).passed_m is None
 
 
 @pytest.mark.parametrize(

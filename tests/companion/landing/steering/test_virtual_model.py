@@ -131,13 +131,13 @@ def test_model_that_is_pressed_falls_as_if_nothing_held_it() -> None:
 
 
 def test_ride_is_the_first_comparison_and_goes_over_to_later_ones_within_half_a_second() -> None:
-    ride = update_ride(NO_RIDE, 0, 0.1)
+    ride = update_ride(NO_RIDE, 0, 0.1, 0.0)
     assert ride.above_m == 0.1
     for step in range(1, 26):
-        ride = update_ride(ride, step * STEP_NS, -0.1)
+        ride = update_ride(ride, step * STEP_NS, -0.1, 0.0)
     assert ride.above_m == pytest.approx(-0.1 + 0.2 * math.exp(-1.0))
 
 
 @pytest.mark.parametrize("above_m", [-3.0, 3.0])
 def test_ride_is_no_more_than_a_lag_makes(above_m: float) -> None:
-    assert abs(update_ride(NO_RIDE, 0, above_m).above_m) == pytest.approx(0.3 * 0.5)
+    assert abs(update_ride(NO_RIDE, 0, above_m, 0.0).above_m) == pytest.approx(0.3 * 0.5)
