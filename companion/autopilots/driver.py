@@ -13,6 +13,7 @@ from companion.autopilots.response import Cascade, Shaping
 from companion.core.data import FlightLimits, RangeReading, Setpoint
 from link.frames.geodesy import LocalFrame, Projection
 from link.mavlink.dialect import Message, mavlink
+from link.mavlink.requests import ONCE, Retries
 
 
 class Receiver(Struct, frozen=True, kw_only=True):
@@ -72,6 +73,7 @@ class AutopilotCommand(Struct, frozen=True, kw_only=True):
 
     command: int
     parameters: tuple[float, float, float, float, float, float, float]
+    retries: Retries = ONCE
 
 
 class DriverMemory(Struct, frozen=True, kw_only=True):

@@ -139,7 +139,7 @@ class AutopilotLink:
         """
         for command in commands:
             if command.command not in self._unanswered:
-                ticket = self.session.command(command.command, command.parameters, local_ns, attempts=1)
+                ticket = self.session.command(command.command, command.parameters, local_ns, command.retries)
                 self._unanswered[command.command] = ticket
 
     def _take(self, events: list[Event], local_ns: int) -> None:

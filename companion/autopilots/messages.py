@@ -4,10 +4,11 @@ from companion.autopilots.driver import AutopilotCommand, Desire, DriverMemory
 from companion.core.data import Setpoint
 from link.frames.rotations import ned_from_enu, yaw_ned_from_enu
 from link.mavlink.dialect import Message, mavlink
+from link.mavlink.requests import ONCE, Retries
 from link.records import replace
 
 ASK_AGAIN_S = 1.0  # the heartbeat that confirms a mode may be a second late
-_DISARM_AGAIN_S = 0.2
+_DISARM_AGAIN_S = 0.2  # even without an answer: a lost command lets the drone slide for as long
 _CUSTOM_MODE_FLAG = 1.0  # MAV_MODE_FLAG_CUSTOM_MODE_ENABLED
 _FORCE_DISARM = 21196.0  # MAVLink common, MAV_CMD_COMPONENT_ARM_DISARM, parameter 2
 _IGNORE_VELOCITY = 0b0000_0000_0011_1000
@@ -87,7 +88,8 @@ def with_disarm_answer(memory: DriverMemory, command: int, result: int) -> Drive
 def arm(*, armed: bool, force: bool = False) -> AutopilotCommand:
     """Return the command that switches the motors on or off."""
     parameters = (float(armed), _FORCE_DISARM if force else 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    return AutopilotCommand(command=mavlink.MAV_CMD_COMPONENT_ARM_DISARM, parameters=parameters)
+    retries = ONCE if armed else Retries(attempts=1, patience_ns=round(_DISARM_AGAIN_S * 1e9))
+    return AutopilotCommand(command=mavlink.MAV_CMD_COMPONENT_ARM_DISARM, parameters=parameters, retries=retries)
 
 
 def set_mode(main: int, sub: int = 0) -> AutopilotCommand:

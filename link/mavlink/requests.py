@@ -15,10 +15,21 @@ from link.mavlink.events import CommandAcknowledged, CommandTimedOut, ParameterM
 from link.mavlink.parameters import NAME_LENGTH_MAX, parameter_value
 
 CommandParams = tuple[float, float, float, float, float, float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Retries:
+    """How often a command is sent at most, and after which time without an acknowledgement it is sent again."""
+
+    attempts: int = 5
+    patience_ns: int = 500_000_000
+
+
+PATIENT = Retries()
+ONCE = Retries(attempts=1)
 _PARAMS = 7
 _AUTOPILOT = mavlink.MAV_COMP_ID_AUTOPILOT1
 _CONFIRMATION_MAX = 255
-_COMMAND_RETRY_NS = 500_000_000  # without an acknowledgement
 _PROGRESS_NS = 10_000_000_000  # patience after an IN_PROGRESS
 
 
@@ -44,7 +55,7 @@ class _Command:
     ticket: int
     command: int
     params: CommandParams
-    attempts_max: int
+    retries: Retries
     attempts: int = 0
     due_ns: int = 0
     in_progress: bool = False
@@ -65,11 +76,11 @@ class CommandSender:
         self._last_ticket: dict[int, int] = {}
         self._tickets = 0
 
-    def submit(self, command: int, params: CommandParams, attempts_max: int, t_ns: int) -> int:
+    def submit(self, command: int, params: CommandParams, t_ns: int, retries: Retries) -> int:
         """Queues a command and sends it when no other of its kind is under way; returns its ticket."""
         self._tickets += 1
         queue = self._queues.setdefault(command, deque())
-        queue.append(_Command(self._tickets, command, params, attempts_max))
+        queue.append(_Command(self._tickets, command, params, retries))
         if len(queue) == 1:
             self._transmit(queue[0], t_ns)
         return self._tickets
@@ -110,7 +121,7 @@ class CommandSender:
         return [_time_out(one, t_ns) for one in dropped]
 
     def _send_again(self, pending: _Command, t_ns: int) -> bool:
-        if pending.in_progress or pending.attempts >= pending.attempts_max:
+        if pending.in_progress or pending.attempts >= pending.retries.attempts:
             return False
         self.retried += 1
         self._transmit(pending, t_ns)
@@ -130,7 +141,7 @@ class CommandSender:
     def _transmit(self, pending: _Command, t_ns: int) -> None:
         self._send(pending.command, pending.params, min(pending.attempts, _CONFIRMATION_MAX))
         pending.attempts += 1
-        pending.due_ns = t_ns + _COMMAND_RETRY_NS
+        pending.due_ns = t_ns + pending.retries.patience_ns
 
 
 def _time_out(pending: _Command, t_ns: int) -> CommandTimedOut:

@@ -12,7 +12,15 @@ from link.mavlink.dialect import Message, mavlink
 from link.mavlink.events import AutopilotRestarted, CommandTimedOut, Event, MessageReceived
 from link.mavlink.parameters import parameter_question
 from link.mavlink.peer import Address, Peer, RestartWatch, companion_heartbeat
-from link.mavlink.requests import CommandParams, CommandSender, ParameterReader, command_message, command_params
+from link.mavlink.requests import (
+    PATIENT,
+    CommandParams,
+    CommandSender,
+    ParameterReader,
+    Retries,
+    command_message,
+    command_params,
+)
 from link.mavlink.signing import Signing
 from link.mavlink.statistics import SessionStatistics
 from link.mavlink.streams import StreamRequests
@@ -20,8 +28,7 @@ from link.mavlink.timer import Timer
 from link.mavlink.timesync import ClockSync, boot_time_ns
 
 _HEARTBEAT_PERIOD_NS = 1_000_000_000  # by the MAVLink heartbeat protocol
-_COMMAND_ATTEMPTS = 5
-_INTERVAL_ATTEMPTS = 3  # of one message's interval, before the next one has its turn
+_INTERVAL = Retries(attempts=3)  # of one message's interval, before the next one has its turn
 
 
 class MavlinkSession:
@@ -135,7 +142,7 @@ class MavlinkSession:
         """
         self._output.append(self._codec.encode(message))
 
-    def command(self, command_id: int, params: Sequence[float], t_ns: int, *, attempts: int | None = None) -> int:
+    def command(self, command_id: int, params: Sequence[float], t_ns: int, retries: Retries = PATIENT) -> int:
         """Sends a command to the autopilot, and again until it is acknowledged.
 
         A further command with the same id waits until this one is answered or has timed out.
@@ -144,7 +151,7 @@ class MavlinkSession:
             command_id: MAV_CMD.
             params: up to seven, the rest is 0; NaN is MAVLink's "not given".
             t_ns: local time now.
-            attempts: how often it is sent at most, five times by default.
+            retries: how often it is sent at most, and when again.
 
         Returns:
             The ticket that its events carry.
@@ -152,7 +159,7 @@ class MavlinkSession:
         Raises:
             ValueError: There are too many parameters, or one is infinite.
         """
-        return self._commands.submit(command_id, command_params(params), attempts or _COMMAND_ATTEMPTS, t_ns)
+        return self._commands.submit(command_id, command_params(params), t_ns, retries)
 
     def request_interval(self, message_id: int, rate_hz: float, t_ns: int) -> None:
         """Asks for a message at a rate until it is granted, and again after a restart or when it stays away.
@@ -229,7 +236,7 @@ class MavlinkSession:
         return [event for event in timed_out if not self._streams.timed_out(event)]
 
     def _command_stream(self, command: int, params: CommandParams, t_ns: int) -> int:
-        return self._commands.submit(command, params, _INTERVAL_ATTEMPTS, t_ns)
+        return self._commands.submit(command, params, t_ns, _INTERVAL)
 
     def _send_command(self, command: int, params: CommandParams, confirmation: int) -> None:
         target = self._peer.target_system_id

@@ -6,6 +6,7 @@ import pytest
 
 from companion.autopilots.driver import AutopilotCommand
 from companion.autopilots.link import AutopilotLink
+from companion.autopilots.messages import arm
 from companion.config.companion import CompanionConfig
 from companion.core.data import Setpoint
 from link.mavlink.codec import MavlinkCodec
@@ -62,11 +63,15 @@ def test_unanswered_disarm_leaves_no_others_behind_it_for_a_later_situation() ->
     assert talk.disarms() == [0.0]
 
 
-def test_next_disarm_goes_out_once_the_first_has_run_out_of_time() -> None:
+@pytest.mark.parametrize(("command", "patience_s"), [(PLAIN, RETRY_S), (arm(armed=False), 0.2)])
+def test_next_disarm_goes_out_once_the_first_has_run_out_of_time(command: AutopilotCommand, patience_s: float) -> None:
     talk = Talk(FakePx4(results={DISARM: ()}))
-    talk.link.send_commands((PLAIN,), talk.t_ns)
-    talk.run(RETRY_S + 0.1)
-    talk.link.send_commands((PLAIN,), talk.t_ns)
+    talk.link.send_commands((command,), talk.t_ns)
+    talk.run(patience_s - 0.05)
+    talk.link.send_commands((command,), talk.t_ns)
+    talk.run(0.1)
+    assert talk.disarms() == [0.0]
+    talk.link.send_commands((command,), talk.t_ns)
     talk.run(0.1)
     assert talk.disarms() == [0.0, 0.0]
 

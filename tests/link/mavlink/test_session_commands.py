@@ -4,6 +4,7 @@ import pytest
 
 from link.mavlink.dialect import mavlink
 from link.mavlink.events import CommandAcknowledged, CommandTimedOut
+from link.mavlink.requests import Retries
 from link.mavlink.session import MavlinkSession
 from link.memory_link import MemoryLink
 from tests.link.mavlink.fake_autopilot import START_NS, FakeAutopilot, Pair, S, of_kind
@@ -41,6 +42,14 @@ def test_an_unanswered_command_is_repeated_with_a_rising_count_and_then_given_up
     (timed_out,) = of_kind(run.run(5.0), CommandTimedOut)
     assert (timed_out.ticket, timed_out.attempts) == (ticket, 5)
     assert [one.confirmation for one in run.autopilot.of_type("COMMAND_LONG")] == [0, 1, 2, 3, 4]
+
+
+def test_a_command_is_repeated_as_often_and_as_soon_as_its_owner_says() -> None:
+    run = found(arm=())
+    ticket = run.session.command(ARM, (0.0,), run.t_ns, Retries(attempts=2, patience_ns=S // 5))
+    assert of_kind(run.run(0.3), CommandTimedOut) == []
+    (timed_out,) = of_kind(run.run(0.15), CommandTimedOut)
+    assert (timed_out.ticket, timed_out.attempts) == (ticket, 2)
 
 
 def test_both_acks_of_a_mode_change_are_told() -> None:
@@ -162,7 +171,7 @@ def test_a_lossy_link_gets_everything_done_in_the_end(seed: int) -> None:
     for message_id in (POSITION_ID, ATTITUDE_ID):
         run.session.request_interval(message_id, 50.0, run.t_ns)
     run.run(2.0)
-    ticket = run.session.command(ARM, (1.0,), run.t_ns, attempts=10)
+    ticket = run.session.command(ARM, (1.0,), run.t_ns, Retries(attempts=10))
     run.session.read_parameter("MPC_XY_VEL_MAX", run.t_ns)
     events = run.run(18.0)
     names = {type(one).__name__ for one in events}

@@ -13,6 +13,7 @@ from link.mavlink.events import (
     LinkRegained,
     MessageReceived,
 )
+from link.mavlink.requests import Retries
 from link.mavlink.session import MavlinkSession
 from link.mavlink.timesync import ClockSync
 from tests.link.mavlink.fake_autopilot import BOOTED_NS, MS, START_NS, UTC_AHEAD_NS, FakeAutopilot, Pair, S, of_kind
@@ -166,7 +167,7 @@ def test_a_command_under_way_does_not_outlive_a_restart() -> None:
     run.session.request_interval(POSITION_ID, 50.0, run.t_ns)
     run.run(4.0)
     run.autopilot.restart(run.t_ns)
-    ticket = run.session.command(400, (1.0,), run.t_ns, attempts=100)
+    ticket = run.session.command(400, (1.0,), run.t_ns, Retries(attempts=100))
     events = run.run(4.0)
     assert [one.ticket for one in of_kind(events, CommandTimedOut)] == [ticket]
     assert of_kind(events, CommandTimedOut)[0].t_ns == of_kind(events, AutopilotRestarted)[0].t_ns
