@@ -126,6 +126,16 @@ class SwingConfig(StrictModel):
     lag_s: Positive  # over which the motion is compared with itself to learn it: a tenth of a period or so
 
 
+class SwayConfig(StrictModel):
+    """How the body of a vehicle on wheels sways that does not tell its tilt, and that nobody has watched yet."""
+
+    tilt_std_rad: Positive = 0.002  # 5 mm of height from axle to axle: on smooth asphalt
+    # Bodies pitch and roll on their wheels at some 1.5 Hz, with dampers of 0.2 to 0.4 (Gillespie 1992, chapter 5).
+    frequency_hz: Positive = 1.5
+    damping: Annotated[float, Field(gt=0.0, lt=1.0)] = 0.3
+    prior_s: Positive = 5.0  # for which this counts as watched: some swings
+
+
 class HeadingConfig(StrictModel):
     """How the vehicle turns, and where it points."""
 
@@ -192,8 +202,8 @@ class ImmConfig(StrictModel):
     initial_acceleration_std_m_s2: Positive = 3.0  # at the first fix; two of them are a brake of 6 m/s^2
     heading: HeadingConfig = HeadingConfig()
     road: RoadConfig = RoadConfig()
-    # Benchmark: `rough_road` heaves 0.1 m at 0.5 to 1 Hz, the others not at all; bodies pitch and roll on their wheels
-    # at some 1.5 Hz (Gillespie 1992, chapter 5).
+    sway: SwayConfig = SwayConfig()
+    # Benchmark: `rough_road` heaves 0.1 m at 0.5 to 1 Hz, the others not at all.
     on_road: SwingConfig = SwingConfig(
         heave=OscillatorConfig(std=0.04, frequency_hz=0.75, damping=0.3),
         tilt=OscillatorConfig(std=0.03, frequency_hz=1.0, damping=0.3),

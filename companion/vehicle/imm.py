@@ -15,27 +15,25 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from companion.config.estimation import ImmConfig, SwingConfig
+from companion.config.estimation import ImmConfig
 from companion.core.data import Array, Forecast, Measurement, Mixture, Quantity, VehicleEstimate
 from companion.vehicle import imm_forecast as forecasts
 from companion.vehicle import imm_judgement as judgement
 from companion.vehicle import imm_mixing as mixing
 from companion.vehicle import steady_driving
-from companion.vehicle.deck_motion import first_motion, learn, passed
+from companion.vehicle.deck_motion import passed
 from companion.vehicle.filter_step import Update, wrapped
+from companion.vehicle.imm_body import MOTIONS, learnt_body, motion_of, opened_body, told_modes, upright_modes
 from companion.vehicle.imm_frames import moved_frame, own_rate_opened_m2_s2, ranged_pad, wandering
 from companion.vehicle.imm_kernels import CURVATURE, HEADING
 from companion.vehicle.imm_mixing import Modes
-from companion.vehicle.imm_numbers import Deck, Numbers, noises_with, numbers_of, swing_of, turns_as_modelled
+from companion.vehicle.imm_numbers import Deck, Numbers, noises_with, numbers_of, turns_as_modelled
 from companion.vehicle.imm_state import (
     KINDS,
     OFFSET,
-    TILT,
     ImmState,
-    has_settled,
     is_heading_known,
     largest,
-    open_deck,
     open_states,
     recover,
     split_fix,
@@ -45,9 +43,7 @@ from companion.vehicle.imm_state import (
 from companion.vehicle.imm_swing import OWN_RATE
 from link.records import replace
 
-SWINGING = np.array([10, 11, *TILT])
 TURNS = frozenset({Quantity.HEADING, Quantity.YAW_RATE})
-MOTIONS = frozenset({Quantity.POSITION, Quantity.VELOCITY})
 HEIGHTS = frozenset({Quantity.PAD, Quantity.SURFACE})
 _OUTAGE_S = 1.0  # of what tells how the vehicle moves; a heading is lost by one of several seconds only
 TURN_AGE_MAX_S = 1.0  # of a sensor that is at work: several periods of the slowest
@@ -102,10 +98,11 @@ class ImmModel:
             measurement = seen
         if measurement.quantity is Quantity.ACCELERATION and not is_heading_known(state, self.config):
             return None
-        if measurement.quantity is Quantity.TILT and state.deck is None:
-            if not has_settled(state, self.config):
-                return None
-            state = self._with_deck(state, measurement)
+        is_afloat = self.deck.is_afloat
+        opened_state = opened_body(state, measurement, self.config, self.numbers, is_afloat=is_afloat)
+        if opened_state is None:
+            return None
+        state = opened_state
         if measurement.quantity in HEIGHTS and self.placed_by is Quantity.POSITION:
             opened = np.array([own_rate_opened_m2_s2(state, self.config.receivers)])
             state = replace(state, modes=open_states(state.modes, np.array([OWN_RATE]), opened))
@@ -121,9 +118,7 @@ class ImmModel:
         course = self.numbers.courses[state.turn_age_s < TURN_AGE_MAX_S]
         modes, nis, gate_nis = judgement.take_reading(modes, reading, self.numbers.lever_m, course)
         tells_turn = measurement.quantity in TURNS and self.placed_by is Quantity.POSITION
-        deck = state.deck
-        if deck is not None and measurement.quantity is Quantity.TILT:
-            deck = learn(deck, (modes[2] @ modes[0])[SWINGING].tolist(), self._swing.lag_s)
+        deck, sway = learnt_body(state, modes, measurement.quantity, self.config, is_afloat=is_afloat)
         updated = ImmState(
             modes=modes,
             driving=steady_driving.learn(state.driving, modes, self.config) if tells_driving else state.driving,
@@ -134,6 +129,7 @@ class ImmModel:
             turn_age_s=0.0 if tells_turn else state.turn_age_s,  # what is only seen to turn is taken for a car
             unmeasured_s=0.0 if tells_motion else state.unmeasured_s,
             deck=deck,
+            sway=sway,
         )
         return Update(state=updated, nis=nis, gate_nis=gate_nis, dof=len(measurement.value))
 
@@ -147,10 +143,13 @@ class ImmModel:
         return replace(recovered, driving=steady_driving.without_pair(recovered.driving))
 
     def describe(self, state: ImmState, t_ns: int) -> VehicleEstimate:
-        """Return the mixture of the modes."""
-        x, told, covariance, modes_told, modes_covariance, heading_variance = forecasts.describe_modes(
-            state.modes, self._motion(state), self._known_variance
-        )
+        """Return the mixture of the modes; its parts are of a body that stands upright."""
+        motion, told_of = self._motion(state), told_modes(state)
+        x, told, covariance, *parts, heading_variance = forecasts.describe_modes(told_of, motion, self._known_variance)
+        off, modes_covariance = parts[0] - told, parts[1]
+        if state.deck is not None:
+            upright = forecasts.describe_modes(upright_modes(state), motion, self._known_variance)
+            off, modes_covariance = upright[3] - upright[1], upright[4]
         known = heading_variance < self._known_variance
         return VehicleEstimate(
             t_ns=t_ns,
@@ -160,7 +159,7 @@ class ImmModel:
             covariance=0.5 * (covariance + covariance.T),
             yaw_rad=wrapped(float(x[HEADING])) if known else None,
             yaw_rate_rad_s=float(x[CURVATURE] * math.hypot(x[2], x[3])) if known else None,
-            mixture=Mixture(weight=state.modes[2], off=modes_told - told, covariance=modes_covariance),
+            mixture=Mixture(weight=state.modes[2], off=off, covariance=modes_covariance),
         )
 
     def forecast(self, state: ImmState, t_ns: int, offset_s: Array) -> Forecast:
@@ -168,7 +167,7 @@ class ImmModel:
         if self.placed_by is Quantity.PAD:
             state = self._as_driven(state, t_ns)
         position, velocity, acceleration, yaw, grade, tilt, std, heading_variance = forecasts.forecast_modes(
-            state.modes, _own(offset_s), self._noises(state), self._motion(state), self._known_variance
+            told_modes(state), _own(offset_s), self._noises(state), self._motion(state), self._known_variance
         )
         means, covariances, weights = state.modes
         is_as_modelled = turns_as_modelled(state.modes, turn_is_measured=state.turn_age_s < TURN_AGE_MAX_S)
@@ -216,23 +215,8 @@ class ImmModel:
             turn_is_measured=state.turn_age_s < TURN_AGE_MAX_S,
         )
 
-    @property
-    def _swing(self) -> SwingConfig:
-        return swing_of(self.config, is_afloat=self.deck.is_afloat)
-
     def _motion(self, state: ImmState) -> Array:
-        """Return the numbers (17,) of the motion, with what has been learnt of the deck's."""
-        if state.deck is None:
-            return self.numbers.motion
-        motion = self.numbers.motion.copy()
-        motion[1:4], motion[10:16] = state.deck.oscillators[:3], state.deck.oscillators[3:]
-        return motion
-
-    def _with_deck(self, state: ImmState, tilt: Measurement) -> ImmState:
-        """Return the state of a vehicle that begins to tell its tilt; what it states may err for ever, too."""
-        variances = np.append(self.numbers.prior_variances[TILT], tilt.covariance.diagonal()[:2])
-        modes = open_deck(state.modes, self.numbers.lever_m, variances)
-        return replace(state, modes=modes, deck=first_motion(self._swing))
+        return motion_of(state, self.config, self.numbers)
 
     def _as_driven(self, state: ImmState, t_ns: int) -> ImmState:
         """Return the state with what is known of drivers: how hard they turn.

@@ -15,19 +15,19 @@ from companion.config.estimation import ImmConfig, ReceiversConfig
 from companion.core.data import Array, Measurement, Quantity
 from companion.vehicle import imm_mixing as mixing
 from companion.vehicle import imm_sensors as sensors
+from companion.vehicle.body_sway import BodySway
 from companion.vehicle.deck_motion import DeckMotion
 from companion.vehicle.imm_kernels import BEND, CLOCK, CURVATURE, HEADING, LEAK, UNKNOWN_HEADING_VARIANCE
 from companion.vehicle.imm_mixing import Modes
 from companion.vehicle.imm_numbers import Numbers
 from companion.vehicle.imm_sensors import observe
-from companion.vehicle.imm_swing import MOUNT, OWN_RATE, ROLL, ROLL_RATE, SIZE, antenna_swing
+from companion.vehicle.imm_swing import MOUNT, OWN_RATE, ROLL, SIZE
 from companion.vehicle.steady_driving import SteadyDriving
 from link.records import replace
 
 PLACE = np.array([0, 1, 8])  # indices of the position
 OFFSET = np.array([12, 13, 14])
 TILT, DECK = np.arange(ROLL, MOUNT), np.arange(ROLL, OWN_RATE)
-_RATE = np.array([2, 3, 10])  # what the velocity of the antenna has beside its swing
 
 IndexArray = NDArray[np.intp]
 
@@ -55,24 +55,6 @@ def open_place_and_offset(covariances: Array, step: Array) -> Array:
         for columns in (PLACE, OFFSET):
             moved[:, rows[:, None], columns] += step
     return moved
-
-
-def open_deck(modes: Modes, lever_m: Array, variances: Array) -> Modes:
-    """Return all modes with `variances` (6,) of the deck's states, which nothing was known of.
-
-    Where the antenna is and how fast stays as it was known: a part of it becomes that of the swing.
-
-    Args:
-        modes: the filter.
-        lever_m: (4,) as `imm_swing.antenna_swing` takes it.
-        variances: of `DECK`.
-    """
-    means, covariances, weights = modes
-    swung = np.zeros((SIZE, len(DECK)))
-    swung[DECK, np.arange(len(DECK))] = 1.0
-    for first, moved in ((ROLL, PLACE), (ROLL_RATE, _RATE)):
-        swung[moved] -= antenna_swing(weights @ means, first, lever_m)[1][:, DECK]
-    return means, covariances + swung @ (variances[:, None] * swung.T), weights
 
 
 KINDS = {
@@ -103,6 +85,7 @@ class ImmState(Struct, frozen=True, kw_only=True, eq=False):
         turn_age_s: how long ago a sensor told the heading or the yaw rate.
         unmeasured_s: how long ago place or velocity was told.
         deck: how the deck swings; None until the vehicle has told its tilt.
+        sway: how its body sways that does not tell its tilt; None until the vehicle is known well enough, and then.
     """
 
     modes: mixing.Modes
@@ -114,6 +97,7 @@ class ImmState(Struct, frozen=True, kw_only=True, eq=False):
     turn_age_s: float = math.inf
     unmeasured_s: float = 0.0
     deck: DeckMotion | None = None
+    sway: BodySway | None = None
 
 
 def start_state(place: Measurement, config: ImmConfig, numbers: Numbers) -> ImmState:
