@@ -144,7 +144,9 @@ def answer(
 def _event_of(order: Order, phase: Phase, s: Situation, config: CompanionConfig) -> Event:
     event = _EVENTS[order.command]
     is_start = event is Event.START
-    stands = not s.autopilot.armed or phase is Phase.ON_DECK or (phase is Phase.LIFT_OFF and has_not_left_deck(s))
+    stands = (
+        not s.autopilot.armed or phase is Phase.ON_DECK or (phase is Phase.LIFT_OFF and has_not_left_deck(s, config))
+    )
     if phase in (Phase.TAKEOFF, Phase.ON_DECK, Phase.LIFT_OFF) and event in (Event.ABORT, Event.HOLD) and stands:
         return Event.CALLED_OFF  # on the ground there is nothing to hold
     if phase is Phase.HOLD and is_start and not _flies(s):

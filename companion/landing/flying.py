@@ -159,7 +159,7 @@ def _at_drone(
     """
     drone, sinking = situation.drone, _is_left_by_pad(memory, situation, config)
     lifts_by_itself = memory.progress.phase is Phase.LIFT_OFF and memory.control.driver.climbs_by_itself
-    if drone is not None and (lifts_by_itself or _stands_on_deck(memory, situation)):
+    if drone is not None and (lifts_by_itself or _stands_on_deck(memory, situation, config)):
         return _with_deck(drone, memory.progress.phase, situation, config)
     if drone is None or not (memory.control.driver.climbs_by_itself or sinking):
         return reference
@@ -173,9 +173,9 @@ def _at_drone(
     )
 
 
-def _stands_on_deck(memory: StepMemory, situation: Situation) -> bool:
+def _stands_on_deck(memory: StepMemory, situation: Situation, config: CompanionConfig) -> bool:
     phase = memory.progress.phase
-    return phase is Phase.ON_DECK or (phase is Phase.LIFT_OFF and has_not_left_deck(situation))
+    return phase is Phase.ON_DECK or (phase is Phase.LIFT_OFF and has_not_left_deck(situation, config))
 
 
 def _with_deck(drone: Drone, phase: Phase, situation: Situation, config: CompanionConfig) -> ReferenceState:

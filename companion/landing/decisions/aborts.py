@@ -148,7 +148,7 @@ def is_out_of_range(s: Situation, c: CompanionConfig) -> bool:
     return math.hypot(*(s.drone.position_enu_m - s.waiting_point_enu_m)[:2].tolist()) > c.limits.range_max_m
 
 
-def _outruns(s: Situation, c: CompanionConfig) -> bool:
+def outruns(s: Situation, c: CompanionConfig) -> bool:
     """Return whether the vehicle is faster than the drone may fly, since a limit was lowered or it drives faster."""
     if s.limits is None or s.pad is None or is_fix_old(s, c):
         return False
@@ -227,7 +227,7 @@ ABORTS = (
     Condition(
         reason=Reason.VEHICLE_OUTRUNS,
         phases=LANDING_PHASES,
-        is_true=_outruns,
+        is_true=outruns,
         hold_s=lambda _, c: c.chase.driving_hold_s,
     ),
     CONTACT_RISKY,

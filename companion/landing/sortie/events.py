@@ -5,9 +5,9 @@ import math
 from companion.config.companion import CompanionConfig
 from companion.core.reasons import Cause, Reason
 from companion.integrity.heights import VEHICLE_M
-from companion.integrity.stamps import is_stamped_ahead
+from companion.integrity.stamps import have_stamps_stepped, is_stamped_ahead
 from companion.integrity.vehicle_data import contradicts_itself
-from companion.landing.decisions.aborts import is_not_followed, is_token_lost
+from companion.landing.decisions.aborts import is_not_followed, is_token_lost, outruns
 from companion.landing.decisions.conditions import (
     HEARD,
     Condition,
@@ -43,8 +43,14 @@ LOST = (
         hold_s=lambda _, c: c.integrity.fix_ahead_hold_s,
     ),
     Condition(reason=Reason.VEHICLE_CONTRADICTS_ITSELF, phases=_TOGETHER, is_true=contradicts_itself),
+    Condition(
+        reason=Reason.VEHICLE_OUTRUNS,
+        phases=frozenset({Phase.FOLLOW, Phase.RETURN}),
+        is_true=outruns,
+        hold_s=lambda _, c: c.chase.driving_hold_s,
+    ),
 )
-"""The vehicle is not heard, or cannot be believed."""
+"""The vehicle is not heard, cannot be believed, or cannot be followed."""
 
 OWN_LOST = (
     Condition(reason=Reason.OWN_POSITION_OLD, phases=_TOGETHER, is_true=is_drone_unknown),
@@ -61,7 +67,10 @@ NOT_FOLLOWED = Condition(
 )
 """Beside a vehicle; on the way home the model is set back to the drone."""
 
-SORTIE_CONDITIONS = (*LOST, *OWN_LOST, NOT_FOLLOWED)
+MISPLACED = Condition(reason=Reason.STAMPS_STEPPED, phases=_TOGETHER, is_true=have_stamps_stepped)
+"""The vehicle is metres from where it seems to be, and a station beside it may be in it: the drone climbs at once."""
+
+SORTIE_CONDITIONS = (*LOST, *OWN_LOST, NOT_FOLLOWED, MISPLACED)
 
 
 def update_sortie(sortie: SortieMemory, phase: Phase, s: Situation, config: CompanionConfig) -> SortieMemory:
@@ -74,7 +83,7 @@ def update_sortie(sortie: SortieMemory, phase: Phase, s: Situation, config: Comp
     if s.pad is not None:
         ahead = ahead_rad(StationFrame.VEHICLE if sortie.station is None else sortie.station.frame, s.pad, ahead)
     is_quiet = phase is Phase.ON_DECK and is_deck_quiet(s, config.sortie.launch)
-    is_found = phase is Phase.RALLY and not is_fix_old(s, config)
+    is_found = phase is Phase.RALLY and not any(condition.is_true(s, config) for condition in LOST)
     sortie = replace(
         sortie,
         ahead_rad=ahead,
@@ -96,8 +105,9 @@ def _warning(sortie: SortieMemory, phase: Phase, s: Situation, config: Companion
     if phase not in OUT_PHASES:
         return None
     lasts_s = left_s(sortie.battery, config.limits.battery_min_share, s.monotonic_ns)
-    spare_s = lasts_s - home_s(s, config) if math.isfinite(lasts_s) else math.inf  # the way may be endless, too
-    if spare_s > config.sortie.warn_before_s:
+    needed_s = home_s(s, config)
+    spare_s = lasts_s - needed_s if math.isfinite(lasts_s) else math.inf
+    if spare_s > config.sortie.warn_before_s or not math.isfinite(needed_s):  # no way home leads to who is faster
         return None
     return sortie.warning or Cause(Reason.HOME_SOON, (max(spare_s, 0.0),))
 
@@ -168,29 +178,35 @@ def is_quiet_for_long(sortie: SortieMemory, s: Situation, config: CompanionConfi
 
 
 def _rise(progress: Progress, s: Situation, config: CompanionConfig) -> Decision | None:
-    unknown = first_cause(OWN_LOST, progress.held, s, config)
+    unknown = first_cause((*OWN_LOST, MISPLACED), progress.held, s, config)
     if unknown is not None:  # that it was on the deck when it was heard last is no reason to stop its motors now
         return Event.UNSAFE, unknown
     lost, launch = first_cause(LOST, progress.held, s, config), config.sortie.launch
     if lost is not None:
-        return (Event.CALLED_OFF if has_not_left_deck(s) else Event.UNSAFE), lost
+        return (Event.CALLED_OFF if has_not_left_deck(s, config) else Event.UNSAFE), lost
     if (s.monotonic_ns - progress.since_ns) * 1e-9 > launch.lift_off_time_limit_s:
         too_long = Cause(TOO_LONG[Phase.LIFT_OFF], (launch.lift_off_time_limit_s,))
-        return (Event.CALLED_OFF if has_not_left_deck(s) else Event.TIME_LIMIT), too_long
+        return (Event.CALLED_OFF if has_not_left_deck(s, config) else Event.TIME_LIMIT), too_long
     if s.approach is not None and s.approach.height_m > _RISEN_SHARE * launch.clear_height_m:
         return Event.CLEAR_OF_DECK, Cause(Reason.CLEAR_OF_DECK, (s.approach.height_m,))
     return None
 
 
-def has_not_left_deck(s: Situation) -> bool:
-    """Return whether the drone stands on the deck still, by its autopilot's word and, where it is known, its place."""
+def has_not_left_deck(s: Situation, config: CompanionConfig) -> bool:
+    """Return whether the drone stands on the deck still, by its autopilot's word and, where it is known, its place.
+
+    Of an autopilot that says nothing a range finder has to see the deck: else it may as well fly.
+    """
     if s.approach is None:
         return s.autopilot.landed is True
-    return s.autopilot.landed is not False and stands_on_deck(s, VEHICLE_M, ON_ROOF_M)
+    seen_m = s.below.range_height_m
+    touches = seen_m is not None and seen_m <= config.touchdown.range_finder.contact_height_max_m
+    stands = touches if s.autopilot.landed is None else s.autopilot.landed
+    return stands and stands_on_deck(s, VEHICLE_M, ON_ROOF_M)
 
 
 def _stay_together(sortie: SortieMemory, progress: Progress, s: Situation, config: CompanionConfig) -> Decision | None:
-    unsafe = first_cause((*OWN_LOST, NOT_FOLLOWED), progress.held, s, config)
+    unsafe = first_cause((*OWN_LOST, NOT_FOLLOWED, MISPLACED), progress.held, s, config)
     if unsafe is not None:
         return Event.UNSAFE, unsafe
     lost = first_cause(LOST, progress.held, s, config)
