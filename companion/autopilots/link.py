@@ -13,6 +13,7 @@ from companion.autopilots.response import Cascade, Shaping
 from companion.autopilots.state import AutopilotState, has_frame_moved, shift_reports, update_state
 from companion.config.autopilot import AutopilotConfig
 from companion.core.data import FlightLimits, Setpoint
+from link.mavlink.clock_map import ClockMap, utc_set_by_ns
 from link.mavlink.dialect import Message, mavlink
 from link.mavlink.events import (
     AutopilotRestarted,
@@ -33,8 +34,7 @@ from link.records import replace
 _ASK = mavlink.MAV_CMD_REQUEST_MESSAGE
 _ASK_ORIGIN_NS = 1_000_000_000
 _ASK_KNOWN_ORIGIN_NS = 5_000_000_000
-CLOCK_SET_NS = 200_000_000
-"""More than the map to UTC is ever refined by at once: beyond it the clock was set."""
+_CLOCK_SET_NS = 20_000_000  # SYSTEM_TIME comes in whole milliseconds: no fit is refined by so much at once
 _BY_ITSELF = AutopilotConfig()
 _LimitsAsked = tuple[FlightLimits, Driver, Mapping[str, float]]
 _WAITED_SHARE = 0.9  # of the autopilot's time-out; the rest is for the way there and back
@@ -68,7 +68,9 @@ class AutopilotLink:
         self._questions = LimitQuestions()
         self._late = LateReports()
         self.pilot_switch = PilotSwitch(config.pilot_switch)
-        self._times: tuple[int, int] | None = None
+        self._clock = ClockMap()
+        self.utc_set_ns = 0
+        """By how much UTC was set in all."""
 
     def receive(self, data: bytes, local_ns: int, *, is_datagram: bool = False) -> None:
         """Take bytes of the transport: whole frames if `is_datagram`, else a piece of a stream.
@@ -230,13 +232,11 @@ class AutopilotLink:
 
     def _follow_clock(self, local_ns: int) -> None:
         """Put off the times of what has been reported, once UTC was set: what comes next has the new time."""
-        utc_ns = self.session.clock.local_to_utc_ns(local_ns)
-        if self._times is not None:
-            then_local_ns, then_utc_ns = self._times
-            set_by_ns = utc_ns - then_utc_ns - (local_ns - then_local_ns)
-            if abs(set_by_ns) > CLOCK_SET_NS:
-                self.state = shift_reports(self.state, set_by_ns)
-        self._times = local_ns, utc_ns
+        set_by_ns = utc_set_by_ns(self._clock, self.session.clock, local_ns)
+        if abs(set_by_ns) > _CLOCK_SET_NS:
+            self.state = shift_reports(self.state, set_by_ns)
+            self.utc_set_ns += set_by_ns
+        self._clock = self.session.clock
 
     def _ask_for_origin(self, local_ns: int) -> None:
         """Ask until it is known, and from time to time after, since it can be moved; one question at a time."""

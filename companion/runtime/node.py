@@ -193,7 +193,8 @@ class CompanionNode:
 
     def _step(self, local_ns: int) -> None:
         state, way, cascade = self.autopilot.state, self.autopilot.session.clock, self.autopilot.cascade
-        self._clock.advance(way.local_to_utc_ns(local_ns), local_ns, None if state.own is None else state.own.t_ns)
+        own_ns = None if state.own is None else state.own.t_ns
+        self._clock.advance(way.local_to_utc_ns(local_ns), local_ns, own_ns, self.autopilot.utc_set_ns)
         switched = self.autopilot.pilot_switch.take()
         command, station = self._commands.next(switched, lambda: self._start_refusal(switched), local_ns)
         kept = self.inputs if self.phase in _KEEPS_LIMITS else None

@@ -1,7 +1,5 @@
 """When a step is made, and its two times: UTC, and a monotonic clock that runs at UTC's rate."""
 
-from companion.autopilots.link import CLOCK_SET_NS
-
 _EARLY = 0.75  # of a period: a new state of the drone starts the next step from here on
 _LATE = 2.0  # periods without a new state after which the step is made without one
 
@@ -21,6 +19,7 @@ class StepClock:
         self.t_ns = 0
         self.monotonic_ns = 0
         self._utc_ahead_ns = 0  # of the monotonic clock, by what UTC has been set to
+        self._utc_set_ns = 0
         self._local_ns: int | None = None
         self._own_ns: int | None = None
         self._rate_hz = rate_hz
@@ -37,7 +36,7 @@ class StepClock:
         periods = (local_ns - self._local_ns) * 1e-9 * self._rate_hz
         return periods >= (_EARLY if own_ns is not None and own_ns != self._own_ns else _LATE)
 
-    def advance(self, utc_ns: int, local_ns: int, own_ns: int | None) -> None:
+    def advance(self, utc_ns: int, local_ns: int, own_ns: int | None, utc_set_ns: int) -> None:
         """Take the time of a step.
 
         The map to UTC is refined all the time, and the step's own time never goes back with it. Where UTC is set, or
@@ -47,14 +46,14 @@ class StepClock:
             utc_ns: now, as far as it is known.
             local_ns: now, on the companion's own clock.
             own_ns: of the drone's state that the step begins with.
+            utc_set_ns: by how much UTC was set in all, of which `utc_ns` knows.
         """
         if self._local_ns is None:
             self._utc_ahead_ns = utc_ns - local_ns
         else:
-            set_by_ns = utc_ns - (self.t_ns + local_ns - self._local_ns)
-            if abs(set_by_ns) > CLOCK_SET_NS:
-                self.t_ns += set_by_ns
-                self._utc_ahead_ns += set_by_ns
+            self.t_ns += utc_set_ns - self._utc_set_ns
+            self._utc_ahead_ns += utc_set_ns - self._utc_set_ns
+        self._utc_set_ns = utc_set_ns
         self.t_ns = max(self.t_ns + 1, utc_ns)
         self.monotonic_ns = self.t_ns - self._utc_ahead_ns
         self._local_ns, self._own_ns = local_ns, own_ns

@@ -26,6 +26,7 @@ UNIX_TIME_MAX_NS = 2_147_400_000 * 10**9
 
 # With fewer pairs the drift is a guess, and a simulation at several times real time would look like endless steps.
 _STEP_PAIRS_MIN = 5
+_STEP_AGREE = 3  # readings in a row that tell of the same step before it is believed: one may be anybody's, or garbled
 
 
 class ClockConfig(Struct, frozen=True, kw_only=True):
@@ -83,6 +84,8 @@ class ClockMap(Struct, frozen=True, kw_only=True):
         boot_to_utc: None before the first SYSTEM_TIME.
         one_way_s: how long a message is under way: half the median round trip, 0 while there was none.
         one_way_std_s: standard deviation of that, when both ways are as unsteady as each other; 0 while it is unknown.
+        doubted_trips: the newest, which tell of a step of the boot clock; not fitted yet.
+        doubted_times: likewise, of UTC.
     """
 
     round_trips: tuple[RoundTrip, ...] = ()
@@ -91,6 +94,8 @@ class ClockMap(Struct, frozen=True, kw_only=True):
     boot_to_utc: ClockLine | None = None
     one_way_s: float = 0.0
     one_way_std_s: float = 0.0
+    doubted_trips: tuple[RoundTrip, ...] = ()
+    doubted_times: tuple[ClockPair, ...] = ()
 
     @property
     def is_utc_known(self) -> bool:
@@ -129,6 +134,16 @@ class ClockMap(Struct, frozen=True, kw_only=True):
         return None if self.local_to_boot is None else self.local_to_boot.std_ns(local_ns)
 
 
+def utc_set_by_ns(before: ClockMap, after: ClockMap, local_ns: int) -> int:
+    """By how much UTC was set from one map to the next; what became known of the boot clock does not count."""
+    if after is before:
+        return 0
+    boot_ns = after.local_to_boot_ns(local_ns)
+    if boot_ns is None or before.local_to_boot is None:
+        return after.local_to_utc_ns(local_ns) - before.local_to_utc_ns(local_ns)
+    return (after.boot_to_utc_ns(boot_ns) or 0) - (before.boot_to_utc_ns(boot_ns) or 0)
+
+
 def _bounded(utc_ns: int) -> int:
     """A time on a fitted line as one that a stamp has room for: the line leaves the bounds that its pairs keep to."""
     return min(max(utc_ns, UNIX_TIME_MIN_NS), UNIX_TIME_MAX_NS)
@@ -148,14 +163,19 @@ def with_round_trip(clock: ClockMap, trip: RoundTrip, config: ClockConfig = DEFA
     if trip.duration_ns < 0:
         return clock
     line, trips = clock.local_to_boot, clock.round_trips
+    news: tuple[RoundTrip, ...] = (trip,)
     if len(trips) >= _STEP_PAIRS_MIN and _is_step(line, trip.middle_ns, trip.boot_ns, trip.duration_ns / 2, config):
+        news = (*clock.doubted_trips, trip)[-_STEP_AGREE:]
+        if not _agree([ClockPair(one.middle_ns, one.boot_ns, one.duration_ns / 2) for one in news], config):
+            return replace(clock, doubted_trips=news)
         trips = ()
     oldest_ns = trip.middle_ns - config.window_ns
-    trips = (*(one for one in trips if one.middle_ns >= oldest_ns), trip)[-config.pairs_max :]
+    trips = (*(one for one in trips if one.middle_ns >= oldest_ns), *news)[-config.pairs_max :]
     durations_ns = sorted(one.duration_ns for one in trips)
     return replace(
         clock,
         round_trips=trips,
+        doubted_trips=(),
         local_to_boot=_fit(_pairs(trips, config), line, config),
         one_way_s=0.5e-9 * durations_ns[len(durations_ns) // 2],
         one_way_std_s=1e-9 * pstdev(durations_ns) * math.sqrt(0.5),
@@ -179,12 +199,15 @@ def with_system_time(
     if not UNIX_TIME_MIN_NS <= unix_ns <= UNIX_TIME_MAX_NS:
         return clock
     line, pairs = clock.boot_to_utc, clock.system_times
+    news: tuple[ClockPair, ...] = (ClockPair(boot_ns, unix_ns, config.system_time_std_ns),)
     if len(pairs) >= _STEP_PAIRS_MIN and _is_step(line, boot_ns, unix_ns, config.system_time_std_ns, config):
+        news = (*clock.doubted_times, *news)[-_STEP_AGREE:]
+        if not _agree(news, config):
+            return replace(clock, doubted_times=news)
         pairs = ()
-    pair = ClockPair(boot_ns, unix_ns, config.system_time_std_ns)
     oldest_ns = boot_ns - config.window_ns
-    pairs = (*(one for one in pairs if one.x_ns >= oldest_ns), pair)[-config.pairs_max :]
-    return replace(clock, system_times=pairs, boot_to_utc=_fit(pairs, line, config))
+    pairs = (*(one for one in pairs if one.x_ns >= oldest_ns), *news)[-config.pairs_max :]
+    return replace(clock, system_times=pairs, doubted_times=(), boot_to_utc=_fit(pairs, line, config))
 
 
 def _pairs(trips: tuple[RoundTrip, ...], config: ClockConfig) -> list[ClockPair]:
@@ -213,3 +236,15 @@ def _is_step(line: ClockLine | None, x_ns: int, y_ns: int, bound_ns: float, conf
         return False
     allowed_ns = bound_ns + 5.0 * line.std_ns(x_ns) + config.step_ns
     return abs(line.y_ns(x_ns) - y_ns) > allowed_ns
+
+
+def _agree(news: Sequence[ClockPair], config: ClockConfig) -> bool:
+    """Whether enough readings lie on one line, whatever its rate, so that they tell of the same step."""
+    if len(news) < _STEP_AGREE:
+        return False
+    first, second, third = news
+    if not first.x_ns < second.x_ns < third.x_ns:
+        return False
+    share = (third.x_ns - first.x_ns) / (second.x_ns - first.x_ns)
+    off_ns = abs(third.y_ns - first.y_ns - share * (second.y_ns - first.y_ns))
+    return off_ns <= config.step_ns + 2.0 * share * max(one.std_ns for one in news)

@@ -28,6 +28,7 @@ from companion.vehicle.surface import surface_measurements
 from link.records import replace
 
 _APPROACHING = LANDING_PHASES | {Phase.ABORT, Phase.TOUCHDOWN}
+_STEP_MAX_NS = 1_000_000_000  # of a clock that is right but for its last correction
 _PRESENT_OFFSETS_S = HORIZON_OFFSETS_S[:2]  # a second point tells how the lever arm turns
 
 
@@ -74,16 +75,18 @@ def _in_present_utc(vehicle: VehicleMemory, inputs: StepInputs) -> VehicleMemory
     """Forget what the vehicle's stamps have been compared with, once UTC was set.
 
     The estimate keeps its times: they are the vehicle's, whose clock is another one, so that nothing that awaits its
-    data can be looked back at any more.
+    data can be looked back at any more. By a step of less than a second the fixes are older or younger from then on,
+    which the stamps are to show; before a longer one UTC was not known.
     """
     utc_ahead_ns = inputs.t_ns - inputs.monotonic_ns
     if utc_ahead_ns == vehicle.utc_ahead_ns:
         return vehicle
+    steps = abs(utc_ahead_ns - vehicle.utc_ahead_ns) < _STEP_MAX_NS
     return replace(
         vehicle,
         utc_ahead_ns=utc_ahead_ns,
         hindsight=forget_instants(vehicle.hindsight),
-        fix_stamps=FixStamps(),
+        fix_stamps=vehicle.fix_stamps if steps else FixStamps(),
         contradictions=Contradictions(),
         sightings=SightingWatch(),
         ranges=RangeWatch(),

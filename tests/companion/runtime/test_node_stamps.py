@@ -67,6 +67,19 @@ def test_flight_goes_on_evenly_when_utc_is_set(set_by_s: float) -> None:
     assert len(setup.autopilot.setpoints()) - before > 190
 
 
+@pytest.mark.parametrize("set_by_s", [-0.1, 0.1])
+def test_time_of_the_flight_is_not_moved_by_a_small_correction_of_utc(set_by_s: float) -> None:
+    setup = flying()
+    setup.run(9.0)
+    assert setup.node.inputs is not None
+    ahead_ns, set_ns = setup.node.inputs.monotonic_ns - setup.t_ns, setup.node.autopilot.utc_set_ns
+    setup.autopilot.utc_set_by_ns = round(set_by_s * S)
+    setup.run(5.0)
+    assert setup.node.autopilot.utc_set_ns - set_ns == pytest.approx(set_by_s * S, abs=0.01 * S)
+    assert setup.node.inputs.t_ns == pytest.approx(setup.utc_ns, abs=0.03 * S)
+    assert setup.node.inputs.monotonic_ns - setup.t_ns == pytest.approx(ahead_ns, abs=0.03 * S)
+
+
 def in_phase_s(setup: Setup) -> float:
     assert setup.node.inputs is not None
     return (setup.node.inputs.monotonic_ns - setup.node.memory.progress.since_ns) * 1e-9

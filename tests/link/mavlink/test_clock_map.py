@@ -122,19 +122,48 @@ def test_mapping_there_and_back_returns_to_the_start(drift: float, since_ns: int
     assert abs((clock.boot_to_local_ns(boot_ns) or 0) - local_ns) <= 2
 
 
-def test_a_step_of_the_boot_clock_is_followed_at_once() -> None:
+def test_a_step_of_the_boot_clock_is_followed_once_three_round_trips_tell_of_it() -> None:
     clock, t_ns = exchanged(0.01, (0.001, 0.002), 10.0, seed=4)
-    answered = boot_at(t_ns + MS, 0.01) - 8 * S
-    clock = with_round_trip(clock, RoundTrip(t_ns, t_ns + 2 * MS, answered))
-    assert abs((clock.local_to_boot_ns(t_ns + MS) or 0) - answered) < MS
+    for count in range(3):
+        before = clock.local_to_boot
+        answered = boot_at(t_ns + MS, 0.01) - 8 * S
+        clock = with_round_trip(clock, RoundTrip(t_ns, t_ns + 2 * MS, answered))
+        assert (clock.local_to_boot is before) is (count < 2)
+        t_ns += 500 * MS
+    t_ns -= 500 * MS
+    assert abs((clock.local_to_boot_ns(t_ns + MS) or 0) - answered) < 2 * MS
 
 
-def test_a_step_of_utc_is_followed_at_once() -> None:
+def told_once_a_second(seconds: int) -> ClockMap:
+    """The map after SYSTEM_TIME at 1 Hz."""
     clock = ClockMap()
-    for k in range(8):
+    for k in range(seconds):
         clock = with_system_time(clock, BOOT_NS + k * S, LOCAL_NS + k * S)
-    clock = with_system_time(clock, BOOT_NS + 8 * S, LOCAL_NS + 8 * S + UTC_AHEAD_NS)
-    assert clock.boot_to_utc_ns(BOOT_NS + 8 * S) == LOCAL_NS + 8 * S + UTC_AHEAD_NS
+    return clock
+
+
+def test_a_step_of_utc_is_followed_once_three_messages_tell_of_it() -> None:
+    clock = told_once_a_second(8)
+    for k in range(8, 11):
+        before = clock.boot_to_utc
+        clock = with_system_time(clock, BOOT_NS + k * S, LOCAL_NS + k * S + UTC_AHEAD_NS)
+        assert (clock.boot_to_utc is before) is (k < 10)
+    assert clock.boot_to_utc_ns(BOOT_NS + 10 * S) == LOCAL_NS + 10 * S + UTC_AHEAD_NS
+
+
+@pytest.mark.parametrize("steps_ms", [(100,), (190,), (-100, 100), (300, 100, -400)])
+def test_messages_that_tell_of_no_step_together_move_nothing(steps_ms: tuple[int, ...]) -> None:
+    clock = told_once_a_second(8)
+    line = clock.boot_to_utc
+    for k in range(30):
+        boot_ns = BOOT_NS + 8 * S + k * S // 10
+        clock = with_system_time(clock, boot_ns, LOCAL_NS + boot_ns - BOOT_NS + steps_ms[k % len(steps_ms)] * MS)
+        if k % len(steps_ms) == len(steps_ms) - 1:
+            clock = with_system_time(clock, boot_ns, LOCAL_NS + boot_ns - BOOT_NS)
+    assert line is not None
+    assert clock.boot_to_utc is not None
+    for at_ns in (BOOT_NS + 8 * S, BOOT_NS + 12 * S):
+        assert clock.boot_to_utc.y_ns(at_ns) == pytest.approx(line.y_ns(at_ns), abs=MS)
 
 
 def test_a_simulation_at_four_times_real_time_is_followed() -> None:
