@@ -7,7 +7,8 @@ Otherwise only sightings of the pad tell the offset, which the estimate has as u
 
 A fixed carrier phase errs by a quarter of its wavelength at most, which is what reflections do to it
 (Hofmann-Wellenhof, Lichtenegger and Collins, "GPS: Theory and Practice", 5th edition, multipath): who states more has
-not fixed it.
+not fixed it. One that steps by more than two such errors has been fixed wrongly, before or after. Until it has been
+fixed anew nobody knows where it is.
 
 A sighting places the pad in the drone's frame, a fix in the vehicle's. Where both have one frame, a pad that is seen
 farther from its told place than both promise means that one of them is wrong: a detector that sees another pattern, or
@@ -47,10 +48,14 @@ class FixedPhases(Struct, frozen=True, kw_only=True):
     Attributes:
         vehicle_std_m: that the newest fix of the vehicle states horizontally, None before the first.
         since_ns: monotonic, since when both have had fixed phases without a break; None while one has not.
+        steps: of the vehicle's place, when they were last counted.
+        has_stepped: by more than fixed phases err, while both had them.
     """
 
     vehicle_std_m: float | None = None
     since_ns: int | None = None
+    steps: int = 0
+    has_stepped: bool = False
 
 
 def update_fixed_phases(
@@ -70,20 +75,31 @@ def update_fixed_phases(
         newest = max(fixes, key=lambda fix: fix.t_ns)
         std_m = max(newest.covariance.diagonal().tolist()[:2]) ** 0.5
     if std_m is None or std_m > FIXED_STD_MAX_M or not drone_is_fixed:
-        return FixedPhases(vehicle_std_m=std_m)
+        return FixedPhases(vehicle_std_m=std_m, steps=before.steps)
     since_ns = monotonic_ns if before.since_ns is None else before.since_ns
     return replace(before, vehicle_std_m=std_m, since_ns=since_ns)
+
+
+def with_place_step(before: FixedPhases, place_step: tuple[int, float]) -> FixedPhases:
+    """Return what both receivers say, and whether the vehicle's place has stepped, as `BufferHealth` has it."""
+    count, moved_m = place_step
+    if count == before.steps:
+        return before
+    has_stepped = count > before.steps and before.since_ns is not None and moved_m > 2.0 * FIXED_STD_MAX_M
+    return replace(before, steps=count, has_stepped=before.has_stepped or has_stepped)
 
 
 def are_frames_one(phases: FixedPhases, configured: ReceiverFrames, monotonic_ns: int) -> bool:
     """Return whether both receivers' positions can be compared without a sighting."""
     match configured:
         case ReceiverFrames.ONE:
-            return True
+            return not phases.has_stepped
         case ReceiverFrames.APART:
             return False
         case ReceiverFrames.AUTO:
-            return phases.since_ns is not None and (monotonic_ns - phases.since_ns) * 1e-9 >= _HOLD_S
+            if phases.since_ns is None or phases.has_stepped:
+                return False
+            return (monotonic_ns - phases.since_ns) * 1e-9 >= _HOLD_S
 
 
 _STDS = 3.0

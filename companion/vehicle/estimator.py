@@ -154,6 +154,7 @@ class BufferHealth(Struct, frozen=True, kw_only=True):
         nis_dof: degrees of freedom that it is the mean of.
         sightings: of the pad, accepted and rejected.
         moves_to_sightings: times the pad was moved to where sightings had it that were rejected for too long.
+        place_step: times fixes that went on moved the vehicle where it was not expected, and how far the last did, m.
     """
 
     fused: int
@@ -164,6 +165,7 @@ class BufferHealth(Struct, frozen=True, kw_only=True):
     nis_dof: int
     sightings: tuple[int, int] = (0, 0)
     moves_to_sightings: int = 0
+    place_step: tuple[int, float] = (0, 0.0)
 
 
 class BufferedEstimator(Struct, Generic[S], frozen=True, kw_only=True):
@@ -206,6 +208,7 @@ class BufferedEstimator(Struct, Generic[S], frozen=True, kw_only=True):
             nis_dof=tally.nis_dof,
             sightings=tally.sightings,
             moves_to_sightings=tally.moves_to_sightings,
+            place_step=tally.place_step,
         )
 
     def _state_at(self, memory: DelayBuffer[S] | None, t_ns: int) -> S | None:

@@ -46,6 +46,7 @@ RANK = {quantity: rank for rank, quantity in enumerate(QUANTITIES)}
 OF_DRONE = frozenset({Quantity.FRAME_STEP, Quantity.SURFACE})
 """What only the drone tells. It is not counted as fused or gated, for that is of the vehicle's data, and no filter
 recovers on it: a range finder may see something else, or be stuck."""
+_GOES_ON_S = 1.0  # between two fixes of a receiver that goes on
 _NEVER: tuple[int | None, ...] = (None,) * len(QUANTITIES)
 
 
@@ -104,6 +105,8 @@ class Tally(Struct, frozen=True, kw_only=True):
     nis_dof: int = 0
     sightings: tuple[int, int] = (0, 0)  # of the pad, accepted and rejected
     moves_to_sightings: int = 0  # recoveries on them
+    place_step: tuple[int, float] = (0, 0.0)  # recoveries on fixes that went on, and by how much the last moved it, m
+    opened_ns: int | None = None  # when the last recovery was
     accepted_ns: tuple[int | None, ...] = _NEVER
     rejected_since_ns: tuple[int | None, ...] = _NEVER
 
@@ -175,17 +178,33 @@ def _start(model: FilterModel[S], snapshot: Snapshot[S], measurement: Measuremen
 
 def _recover(model: FilterModel[S], state: S, tally: Tally, measurement: Measurement) -> Snapshot[S]:
     """Open the filter, predicted to data that it has rejected for too long, to them, and fuse them."""
-    state, t_ns, rank = model.recover(state, measurement), measurement.t_ns, RANK[measurement.quantity]
+    before, t_ns, rank = state, measurement.t_ns, RANK[measurement.quantity]
+    state = model.recover(state, measurement)
     update = model.update(state, measurement)
+    state = state if update is None else update.state
     tally = replace(
         tally,
         recoveries=tally.recoveries + 1,
         sightings=_count_sighting(tally, rank, is_rejected=True),
         moves_to_sightings=tally.moves_to_sightings + (measurement.quantity is Quantity.PAD),
+        place_step=_count_step(tally, measurement, model.describe(before, t_ns), model.describe(state, t_ns)),
+        opened_ns=t_ns,
         accepted_ns=_put(tally.accepted_ns, rank, t_ns),
         rejected_since_ns=_NEVER,
     )
-    return Snapshot(t_ns=t_ns, told_ns=t_ns, state=state if update is None else update.state, tally=tally)
+    return Snapshot(t_ns=t_ns, told_ns=t_ns, state=state, tally=tally)
+
+
+def _count_step(
+    tally: Tally, measurement: Measurement, before: VehicleEstimate, after: VehicleEstimate
+) -> tuple[int, float]:
+    """Return the steps of the vehicle's place with this one, if fixes went on: what follows a silence is none."""
+    accepted_ns, since_ns = tally.accepted_ns[RANK[Quantity.POSITION]], measurement.t_ns - round(_GOES_ON_S * 1e9)
+    goes_on = accepted_ns is not None and accepted_ns >= since_ns
+    is_open = tally.opened_ns is not None and tally.opened_ns >= since_ns
+    if measurement.quantity is not Quantity.POSITION or is_open or not goes_on:
+        return tally.place_step
+    return tally.place_step[0] + 1, math.hypot(*(after.position_enu_m - before.position_enu_m)[:2].tolist())
 
 
 def _accept(tally: Tally, rank: int, t_ns: int, update: Update[S]) -> Tally:
@@ -197,6 +216,8 @@ def _accept(tally: Tally, rank: int, t_ns: int, update: Update[S]) -> Tally:
         nis_dof=tally.nis_dof + update.dof,
         sightings=_count_sighting(tally, rank, is_rejected=False),
         moves_to_sightings=tally.moves_to_sightings,
+        place_step=tally.place_step,
+        opened_ns=tally.opened_ns,
         accepted_ns=_put(tally.accepted_ns, rank, t_ns),
         rejected_since_ns=_put(tally.rejected_since_ns, rank, None),
     )

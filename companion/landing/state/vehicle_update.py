@@ -12,6 +12,7 @@ from companion.integrity.sightings import (
     forget_step,
     update_fixed_phases,
     update_sightings,
+    with_place_step,
 )
 from companion.integrity.stamps import FixStamps, update_fix_stamps
 from companion.integrity.vehicle_data import Contradictions, update_contradictions, without_contradicted_heading
@@ -47,11 +48,12 @@ def update_vehicle(vehicle: VehicleMemory, inputs: StepInputs, system: System) -
             measurements += surface_measurements(seen, rises_m, inputs.t_ns, system.config.touchdown, apart_std_m)
     if measurements:
         estimator = system.estimator.fuse(estimator, measurements)
-    contradictions, sightings = vehicle.contradictions, vehicle.sightings
+    contradictions, sightings, phases = vehicle.contradictions, vehicle.sightings, vehicle.phases
     if contradictions.is_due(now_ns):
         health = system.estimator.health(estimator)
         contradictions = update_contradictions(contradictions, health, now_ns)
         sightings = update_sightings(sightings, health, now_ns, system.config)
+        phases = with_place_step(phases, health.place_step)
     return replace(
         vehicle,
         estimator=estimator,
@@ -66,7 +68,7 @@ def update_vehicle(vehicle: VehicleMemory, inputs: StepInputs, system: System) -
         contradictions=contradictions,
         sightings=sightings,
         phases=update_fixed_phases(
-            vehicle.phases, inputs.vehicle.measurements, now_ns, drone_is_fixed=inputs.autopilot.receiver.is_fixed
+            phases, inputs.vehicle.measurements, now_ns, drone_is_fixed=inputs.autopilot.receiver.is_fixed
         ),
     )
 

@@ -7,7 +7,13 @@ from hypothesis import strategies as st
 
 from companion.config.integrity import ReceiverFrames
 from companion.core.data import Measurement, Quantity
-from companion.integrity.sightings import FIXED_STD_MAX_M, FixedPhases, are_frames_one, update_fixed_phases
+from companion.integrity.sightings import (
+    FIXED_STD_MAX_M,
+    FixedPhases,
+    are_frames_one,
+    update_fixed_phases,
+    with_place_step,
+)
 
 STEP_NS = 100_000_000
 HOLD_STEPS = 20
@@ -51,6 +57,34 @@ def test_a_step_without_fixes_and_other_measurements_change_nothing() -> None:
     phases = after([(0.01, True)] * 30)
     for measurements in ([], [fix(5.0, quantity=Quantity.PAD)]):
         assert update_fixed_phases(phases, measurements, 10**10, drone_is_fixed=True) == phases
+
+
+FIXED, LATER_NS = [(0.01, True)] * 30, 100 * STEP_NS
+
+
+@pytest.mark.parametrize("configured", [AUTO, ReceiverFrames.ONE])
+@pytest.mark.parametrize(("moved_m", "is_one"), [(0.08, True), (0.12, False), (5.0, False)])
+def test_vehicle_that_steps_by_more_than_two_fixed_phases_err_has_no_frame_any_more(
+    configured: ReceiverFrames, moved_m: float, *, is_one: bool
+) -> None:
+    stepped = with_place_step(after(FIXED), (1, moved_m))
+    assert are_frames_one(stepped, configured, LATER_NS) is is_one
+    going_on = update_fixed_phases(with_place_step(stepped, (1, moved_m)), [fix(0.01)], LATER_NS, drone_is_fixed=True)
+    assert are_frames_one(going_on, configured, 2 * LATER_NS) is is_one
+
+
+def test_receiver_that_has_fixed_its_phases_anew_has_a_frame_again() -> None:
+    phases = with_place_step(after(FIXED), (1, 5.0))
+    for step, std_m in enumerate([0.3, *[0.01] * 30]):
+        phases = update_fixed_phases(phases, [fix(std_m)], LATER_NS + step * STEP_NS, drone_is_fixed=True)
+    assert are_frames_one(phases, AUTO, LATER_NS + 30 * STEP_NS)
+
+
+def test_step_of_phases_that_are_not_fixed_and_a_filter_that_counts_anew_are_none() -> None:
+    floats = with_place_step(after([(0.3, True)] * 30), (1, 5.0))
+    assert not floats.has_stepped
+    counted = with_place_step(after(FIXED), (3, 0.01))
+    assert not with_place_step(counted, (1, 5.0)).has_stepped
 
 
 def test_the_newest_fix_of_a_step_counts() -> None:
