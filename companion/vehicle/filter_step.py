@@ -198,9 +198,10 @@ def _recover(model: FilterModel[S], state: S, tally: Tally, measurement: Measure
 def _count_step(
     tally: Tally, measurement: Measurement, before: VehicleEstimate, after: VehicleEstimate
 ) -> tuple[int, float]:
-    """Return the steps of the vehicle's place with this one, if fixes went on: what follows a silence is none."""
-    accepted_ns, since_ns = tally.accepted_ns[RANK[Quantity.POSITION]], measurement.t_ns - round(_GOES_ON_S * 1e9)
-    goes_on = accepted_ns is not None and accepted_ns >= since_ns
+    """Return the steps of the place with this one; what follows a silence is none, nor what the velocity shows, too."""
+    since_ns, velocity = measurement.t_ns - round(_GOES_ON_S * 1e9), RANK[Quantity.VELOCITY]
+    told = (tally.accepted_ns[RANK[Quantity.POSITION]], tally.accepted_ns[velocity])
+    goes_on = all(one is not None and one >= since_ns for one in told) and tally.rejected_since_ns[velocity] is None
     is_open = tally.opened_ns is not None and tally.opened_ns >= since_ns
     if measurement.quantity is not Quantity.POSITION or is_open or not goes_on:
         return tally.place_step

@@ -7,7 +7,7 @@ from companion.config.estimation import EstimatorConfig, EstimatorKind
 from companion.core.data import Measurement, Quantity
 from companion.vehicle.estimator import BufferHealth, Estimator
 from link.records import replace
-from tests.companion.vehicle.drives import NOMINAL, straight
+from tests.companion.vehicle.drives import NOMINAL, drive, straight
 from tests.companion.vehicle.rides import arrivals, estimator, now_ns
 
 BEGINS_S = 8.0
@@ -39,6 +39,14 @@ def test_fixes_that_go_on_elsewhere_are_one_step_of_the_place(by_m: float) -> No
 
 def test_fixes_that_go_on_as_expected_are_none() -> None:
     assert health_after(0.0).place_step == (0, 0.0)
+
+
+def test_vehicle_that_leaves_at_once_has_not_stepped() -> None:
+    leaves = drive(14.0, lambda t_s: 5.0 if t_s > BEGINS_S else 0.0, lambda _: 0.0)
+    chosen: Estimator = estimator(EstimatorKind.IMM, EstimatorConfig())
+    health = chosen.health(chosen.fuse(None, arrivals(leaves, NOMINAL, 3)))
+    assert health.recoveries > 0
+    assert health.place_step == (0, 0.0)
 
 
 def test_what_happened_in_a_silence_is_none() -> None:
