@@ -17,7 +17,7 @@ from link.transports.opening import Transport, open_transport
 from link.zenoh.keys import Keys, Publication
 from link.zenoh.session import ZenohOptions, ZenohSession, open_session
 from scenarios.config import Scenario
-from scenarios.firmware.ship import PARAMETERS, ship_at
+from scenarios.firmware.ship import PARAMETERS, ship_at, ship_at_rest
 from scenarios.firmware.truth import DRAG_PER_MASS_HZ, NAMES
 from scenarios.firmware.watch import FirmwareWatch
 from scenarios.processes.programs import MODULES, ProcessGroup, Program, free_tcp_endpoint
@@ -202,6 +202,6 @@ class _Flight:
         report, clock = self._watch.ship, self._watch.session.clock
         reported_ns = None if report is None else clock.boot_to_utc_ns(report.boot_ns)
         if report is None or reported_ns is None:
-            return self._vehicle.step(t_ns, None)
+            return self._vehicle.published(ship_at_rest(t_ns), None)
         radius_m = 0.5 * PARAMETERS["SIM_SHIP_PSIZE"]
         return self._vehicle.published(ship_at(report, reported_ns, t_ns, self._datum, radius_m), self._watch.drone)

@@ -43,6 +43,21 @@ def ship_report(message: Message) -> ShipReport | None:
     )
 
 
+def ship_at_rest(t_ns: int) -> VehicleState:
+    """Return the ship at `t_ns` before it sails: where it begins, bow to the north; no vehicle leaps there later."""
+    yaw_rad = 0.5 * math.pi
+    return VehicleState(
+        t_ns=t_ns,
+        position_enu_m=(PARAMETERS["SIM_SHIP_OFS_Y"], PARAMETERS["SIM_SHIP_OFS_X"], 0.0),
+        velocity_enu_m_s=(0.0, 0.0, 0.0),
+        acceleration_enu_m_s2=(0.0, 0.0, 0.0),
+        orientation_wxyz=quaternion_from_yaw(yaw_rad),
+        angular_velocity_flu_rad_s=(0.0, 0.0, 0.0),
+        yaw_rad=yaw_rad,
+        yaw_rate_rad_s=0.0,
+    )
+
+
 def ship_at(report: ShipReport, reported_ns: int, t_ns: int, datum: Datum, turn_radius_m: float) -> VehicleState:
     """Return the ship at `t_ns`.
 

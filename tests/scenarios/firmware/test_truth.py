@@ -4,10 +4,10 @@ import math
 
 import pytest
 
-from link.frames.geodesy import Datum, enu_from_geodetic
+from link.frames.geodesy import Datum, enu_from_geodetic, geodetic_from_enu
 from link.frames.rotations import rotate
 from link.mavlink.dialect import mavlink
-from scenarios.firmware.ship import ShipReport, ship_at, ship_report
+from scenarios.firmware.ship import ShipReport, ship_at, ship_at_rest, ship_report
 from scenarios.firmware.truth import body_truth, motors_armed, rotor_truth, true_pose
 
 DATUM = Datum(latitude_rad=math.radians(47.4), longitude_rad=math.radians(8.5), altitude_m=488.0)
@@ -57,6 +57,20 @@ def test_ship_drives_on_its_circle_between_reports() -> None:
     assert ship.yaw_rad == pytest.approx(math.radians(90.0) - angle_rad)
     assert math.hypot(*ship.velocity_enu_m_s) == pytest.approx(speed_m_s)
     assert math.hypot(*ship.acceleration_enu_m_s2) == pytest.approx(speed_m_s**2 / radius_m)
+
+
+def test_ship_lies_where_and_as_its_first_report_has_it() -> None:
+    latitude_rad, longitude_rad, _ = geodetic_from_enu(DATUM, (-1.5, -40.0, 0.0))
+    first = ShipReport(
+        boot_ns=0, latitude_rad=latitude_rad, longitude_rad=longitude_rad, speed_m_s=0.0, yaw_rad=math.radians(90.0)
+    )
+    lies, sails = ship_at_rest(7 * NS), ship_at(first, 7 * NS, 7 * NS, DATUM, 500.0)
+    assert lies.position_enu_m == pytest.approx(sails.position_enu_m, abs=1e-3)
+    assert (lies.t_ns, lies.velocity_enu_m_s, lies.orientation_wxyz) == (
+        7 * NS,
+        (0.0, 0.0, 0.0),
+        sails.orientation_wxyz,
+    )
 
 
 def test_only_the_ships_own_position_is_its_report() -> None:
