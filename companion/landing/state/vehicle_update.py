@@ -29,7 +29,8 @@ from companion.vehicle.surface import surface_measurements
 from link.records import replace
 
 _APPROACHING = LANDING_PHASES | {Phase.ABORT, Phase.TOUCHDOWN}
-_STEP_MAX_NS = 1_000_000_000  # of a clock that is right but for its last correction
+_SMALL_NS = 200_000_000  # clocks that date coarse fixes are up to 0.1 s off, either way (docs/benchmark.md)
+_CORRECTION_MAX_NS = 1_000_000_000  # more is none: UTC was not known before
 _PRESENT_OFFSETS_S = HORIZON_OFFSETS_S[:2]  # a second point tells how the lever arm turns
 
 
@@ -77,18 +78,18 @@ def _in_present_utc(vehicle: VehicleMemory, inputs: StepInputs) -> VehicleMemory
     """Forget what the vehicle's stamps have been compared with, once UTC was set.
 
     The estimate keeps its times: they are the vehicle's, whose clock is another one, so that nothing that awaits its
-    data can be looked back at any more. By a step of less than a second the fixes are older or younger from then on,
-    which the stamps are to show; before a longer one UTC was not known.
+    data can be looked back at any more. By a correction the fixes are older or younger from then on, which the stamps
+    are to show. A small one leaves the sightings what they were: they go on to place the pad.
     """
     utc_ahead_ns = inputs.t_ns - inputs.monotonic_ns
-    if utc_ahead_ns == vehicle.utc_ahead_ns:
-        return vehicle
-    steps = abs(utc_ahead_ns - vehicle.utc_ahead_ns) < _STEP_MAX_NS
+    set_by_ns = abs(utc_ahead_ns - vehicle.utc_ahead_ns)
+    if set_by_ns < _SMALL_NS:
+        return vehicle if not set_by_ns else replace(vehicle, utc_ahead_ns=utc_ahead_ns)
     return replace(
         vehicle,
         utc_ahead_ns=utc_ahead_ns,
         hindsight=forget_instants(vehicle.hindsight),
-        fix_stamps=vehicle.fix_stamps if steps else FixStamps(),
+        fix_stamps=vehicle.fix_stamps if set_by_ns < _CORRECTION_MAX_NS else FixStamps(),
         contradictions=Contradictions(),
         sightings=SightingWatch(),
         ranges=RangeWatch(),

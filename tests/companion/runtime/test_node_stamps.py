@@ -6,7 +6,9 @@ from typing import cast
 import numpy as np
 import pytest
 
+from companion.integrity.sightings import SightingWatch
 from companion.vehicle.estimator import DelayBuffer
+from link.records import replace
 from tests.companion.peer import Setup
 from tests.companion.runtime.setups import flying, ready
 from tests.link.mavlink.fake_autopilot import S
@@ -78,6 +80,19 @@ def test_time_of_the_flight_is_not_moved_by_a_small_correction_of_utc(set_by_s: 
     assert setup.node.autopilot.utc_set_ns - set_ns == pytest.approx(set_by_s * S, abs=0.01 * S)
     assert setup.node.inputs.t_ns == pytest.approx(setup.utc_ns, abs=0.03 * S)
     assert setup.node.inputs.monotonic_ns - setup.t_ns == pytest.approx(ahead_ns, abs=0.03 * S)
+
+
+@pytest.mark.parametrize(("set_by_s", "goes_on"), [(0.1, True), (0.7, False)])
+def test_pad_that_was_seen_stays_where_it_is_through_a_small_correction_of_utc(
+    set_by_s: float, *, goes_on: bool
+) -> None:
+    setup = flying()
+    setup.run(9.0)
+    vehicle = setup.node.memory.vehicle
+    setup.node.memory = replace(setup.node.memory, vehicle=replace(vehicle, sightings=SightingWatch(is_confirmed=True)))
+    setup.autopilot.utc_set_by_ns = round(set_by_s * S)
+    setup.run(5.0)
+    assert setup.node.memory.vehicle.sightings.is_confirmed is goes_on
 
 
 def in_phase_s(setup: Setup) -> float:
