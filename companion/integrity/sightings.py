@@ -74,8 +74,11 @@ def update_fixed_phases(
     if fixes:
         newest = max(fixes, key=lambda fix: fix.t_ns)
         std_m = max(newest.covariance.diagonal().tolist()[:2]) ** 0.5
-    if std_m is None or std_m > FIXED_STD_MAX_M or not drone_is_fixed:
-        return FixedPhases(vehicle_std_m=std_m, steps=before.steps)
+    vehicle_is_fixed = std_m is not None and std_m <= FIXED_STD_MAX_M
+    if not (vehicle_is_fixed and drone_is_fixed):
+        # That the drone's receiver is fixed anew says nothing of the vehicle's, which has stepped.
+        has_stepped = before.has_stepped and vehicle_is_fixed
+        return FixedPhases(vehicle_std_m=std_m, steps=before.steps, has_stepped=has_stepped)
     since_ns = monotonic_ns if before.since_ns is None else before.since_ns
     return replace(before, vehicle_std_m=std_m, since_ns=since_ns)
 

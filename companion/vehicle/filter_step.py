@@ -187,7 +187,7 @@ def _recover(model: FilterModel[S], state: S, tally: Tally, measurement: Measure
         recoveries=tally.recoveries + 1,
         sightings=_count_sighting(tally, rank, is_rejected=True),
         moves_to_sightings=tally.moves_to_sightings + (measurement.quantity is Quantity.PAD),
-        place_step=_count_step(tally, measurement, model.describe(before, t_ns), model.describe(state, t_ns)),
+        place_step=_count_step(model, tally, measurement, before, state),
         opened_ns=t_ns,
         accepted_ns=_put(tally.accepted_ns, rank, t_ns),
         rejected_since_ns=_NEVER,
@@ -196,7 +196,7 @@ def _recover(model: FilterModel[S], state: S, tally: Tally, measurement: Measure
 
 
 def _count_step(
-    tally: Tally, measurement: Measurement, before: VehicleEstimate, after: VehicleEstimate
+    model: FilterModel[S], tally: Tally, measurement: Measurement, before: S, after: S
 ) -> tuple[int, float]:
     """Return the steps of the place with this one; what follows a silence is none, nor what the velocity shows, too."""
     since_ns, velocity = measurement.t_ns - round(_GOES_ON_S * 1e9), RANK[Quantity.VELOCITY]
@@ -205,7 +205,8 @@ def _count_step(
     is_open = tally.opened_ns is not None and tally.opened_ns >= since_ns
     if measurement.quantity is not Quantity.POSITION or is_open or not goes_on:
         return tally.place_step
-    return tally.place_step[0] + 1, math.hypot(*(after.position_enu_m - before.position_enu_m)[:2].tolist())
+    here, there = (model.describe(one, measurement.t_ns).position_enu_m for one in (before, after))
+    return tally.place_step[0] + 1, math.hypot(*(there - here)[:2].tolist())
 
 
 def _accept(tally: Tally, rank: int, t_ns: int, update: Update[S]) -> Tally:

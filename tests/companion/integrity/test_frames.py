@@ -80,6 +80,13 @@ def test_receiver_that_has_fixed_its_phases_anew_has_a_frame_again() -> None:
     assert are_frames_one(phases, AUTO, LATER_NS + 30 * STEP_NS)
 
 
+def test_drones_receiver_that_is_fixed_anew_vouches_for_no_vehicle_that_has_stepped() -> None:
+    phases = with_place_step(after(FIXED), (1, 5.0))
+    for step, drone_is_fixed in enumerate([False, *[True] * 30]):
+        phases = update_fixed_phases(phases, [fix(0.01)], LATER_NS + step * STEP_NS, drone_is_fixed=drone_is_fixed)
+    assert not are_frames_one(phases, AUTO, LATER_NS + 30 * STEP_NS)
+
+
 def test_step_of_phases_that_are_not_fixed_and_a_filter_that_counts_anew_are_none() -> None:
     floats = with_place_step(after([(0.3, True)] * 30), (1, 5.0))
     assert not floats.has_stepped
