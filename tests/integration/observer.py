@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 
 from companion.situation.phases import Phase
 from link.zenoh.keys import Keys
@@ -13,7 +14,8 @@ from scenarios.recordings.watcher import Watcher
 from scenarios.scoring.score import Score
 from tests.integration.programs import until
 
-SCENARIO = load_scenario("straight_5")
+PASSES_SOON = str(Path(__file__).with_name("passes_soon.toml"))
+SCENARIO = load_scenario(PASSES_SOON)
 SEED = 1
 STEADY_STATUSES = 10
 """What is known may go again while an autopilot's clock is being learnt."""

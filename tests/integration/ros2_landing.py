@@ -16,7 +16,7 @@ from link.zenoh.session import ZenohOptions
 from scenarios.processes.programs import free_tcp_endpoint, free_udp_port
 from scenarios.scoring.score import Score
 from sim_autopilot.runtime.config import DatumConfig
-from tests.integration.observer import Observer
+from tests.integration.observer import PASSES_SOON, Observer
 from tests.integration.programs import Programs
 from tests.integration.ros_vehicle import DOMAIN
 
@@ -52,7 +52,7 @@ def land(folder: Path, seed: int, look: Callable[[Programs, tuple[str, ...]], No
             listening = ("--mavlink", f"udpin:127.0.0.1:{port}", "--start", "--use-sim-time")
             programs.start("companion", *listening, *ros2, *client)
             speaking = ("--mavlink", f"udpout:127.0.0.1:{port}", "--seed", str(seed))
-            programs.start("scenarios", "world", "straight_5+wind=nominal", *speaking, *client)
+            programs.start("scenarios", "world", f"{PASSES_SOON}+wind=nominal", *speaking, *client)
             bystander.wait_for_relative_position()
             look(programs, client)
             return bystander.wait_for_end()

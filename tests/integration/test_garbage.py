@@ -12,7 +12,7 @@ from link.zenoh.keys import Keys
 from link.zenoh.session import ZenohOptions, ZenohSession, open_session
 from scenarios.recordings.result import LANDED
 from scenarios.scoring.score import Tier
-from tests.integration.observer import Observer
+from tests.integration.observer import PASSES_SOON, Observer
 from tests.integration.programs import Program, Programs, until
 
 pytestmark = pytest.mark.wire
@@ -58,7 +58,7 @@ class Thrower:
 
 def test_garbage_on_the_port_and_on_every_key_is_counted_and_the_landing_succeeds(tmp_path: Path) -> None:
     with Programs() as programs:
-        run = programs.start("scenarios", "run", "straight_5", "--json", "--out", str(tmp_path))
+        run = programs.start("scenarios", "run", PASSES_SOON, "--json", "--out", str(tmp_path))
         endpoint = option_of(run, "companion", "-e")
         device = option_of(run, "companion", "--mavlink")
         with (

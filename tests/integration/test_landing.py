@@ -4,7 +4,7 @@ import pytest
 
 from scenarios.processes.programs import free_tcp_endpoint, free_udp_port
 from scenarios.recordings.result import LANDED
-from tests.integration.observer import observer
+from tests.integration.observer import PASSES_SOON, observer
 from tests.integration.programs import Programs
 
 pytestmark = pytest.mark.wire
@@ -13,7 +13,7 @@ pytestmark = pytest.mark.wire
 def test_four_programs_land_on_command_with_the_companion_started_last() -> None:
     port, endpoint = free_udp_port(), free_tcp_endpoint()
     with Programs() as programs, observer(endpoint) as bystander:
-        programs.start("ground-vehicle", "--scenario", "straight_5", "--use-sim-time", "-l", endpoint)
+        programs.start("ground-vehicle", "--scenario", PASSES_SOON, "--use-sim-time", "-l", endpoint)
         programs.start("sim-autopilot", "--mavlink", f"udpout:127.0.0.1:{port}", "-e", endpoint)
         bystander.wait_for_time(1.0)
         programs.start("companion", "--mavlink", f"udpin:127.0.0.1:{port}", "-e", endpoint, "--use-sim-time")

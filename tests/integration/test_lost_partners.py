@@ -6,7 +6,7 @@ from companion.situation.phases import Phase
 from link.frames.rotations import rotate
 from link.messages import BodyTruth
 from scenarios.processes.programs import free_tcp_endpoint, free_udp_port
-from tests.integration.observer import Observer, observer
+from tests.integration.observer import PASSES_SOON, Observer, observer
 from tests.integration.programs import Programs
 
 pytestmark = pytest.mark.wire
@@ -58,9 +58,9 @@ def test_the_companion_outlives_a_simulator_killed_in_flight_and_flies_with_the_
 def test_the_drone_climbs_away_when_the_vehicle_is_killed_in_the_chase() -> None:
     port, endpoint = free_udp_port(), free_tcp_endpoint()
     with Programs() as programs, observer(endpoint) as bystander:
-        vehicle = programs.start("ground-vehicle", "--scenario", "straight_5", "--use-sim-time", "-l", endpoint)
+        vehicle = programs.start("ground-vehicle", "--scenario", PASSES_SOON, "--use-sim-time", "-l", endpoint)
         device = ("--mavlink", f"udpout:127.0.0.1:{port}")
-        programs.start("sim-autopilot", *device, "-e", endpoint)
+        programs.start("sim-autopilot", *device, "--instant", "-e", endpoint)
         programs.start("companion", "--mavlink", f"udpin:127.0.0.1:{port}", "-e", endpoint, "--use-sim-time", "--start")
         bystander.wait_for_phase(Phase.CHASE, Phase.ALIGN)
         vehicle.kill()

@@ -9,6 +9,7 @@ from typing import Any
 import psutil  # type: ignore[import-untyped]  # it has no annotations
 import pytest
 
+from tests.integration.observer import PASSES_SOON
 from tests.integration.programs import Program, Programs, all_end, until
 
 pytestmark = pytest.mark.wire
@@ -45,7 +46,7 @@ def test_two_runs_at_once_leave_their_folders_of_a_landing_and_of_what_came_unti
     with Programs() as programs:
         runs = [
             start_run(programs, tmp_path, "--seed", str(seed), "--json", scenario=scenario)
-            for seed, scenario in ((1, "straight_5"), (2, str(short)))
+            for seed, scenario in ((1, PASSES_SOON), (2, str(short)))
         ]
         codes = [run.wait() for run in runs]
         printed = [json.loads("\n".join(run.out.all)) for run in runs]

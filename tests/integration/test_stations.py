@@ -11,7 +11,7 @@ from companion.component.parameters import PARAMETERS
 from companion.situation.phases import Phase
 from scenarios.processes.programs import free_tcp_endpoint, free_udp_port
 from tests.conformance.mavproxy_client import mavproxy
-from tests.integration.observer import Observer, observer
+from tests.integration.observer import PASSES_SOON, Observer, observer
 from tests.integration.programs import Programs
 
 pytestmark = pytest.mark.wire
@@ -24,7 +24,7 @@ def landing(firmware: str, *options: str) -> Iterator[tuple[Programs, Observer, 
     links = ("--mavlink", f"udpout:127.0.0.1:{port}", "--mavlink", f"udpout:127.0.0.1:{station_port}")
     flags = ("--firmware", firmware, "--instant")
     with Programs() as programs, observer(endpoint) as bystander:
-        programs.start("ground-vehicle", "--scenario", "straight_5", "--use-sim-time", "-l", endpoint)
+        programs.start("ground-vehicle", "--scenario", PASSES_SOON, "--use-sim-time", "-l", endpoint)
         device = f"udpin:127.0.0.1:{port}"
         programs.start("companion", "--mavlink", device, "-e", endpoint, "--use-sim-time", *options)
         programs.start("sim-autopilot", *links, *flags, "-e", endpoint)

@@ -13,6 +13,7 @@ from playwright.sync_api import TimeoutError as TooLateError
 from link.payloads.decklander_msgs import fields_of
 from scenarios.processes.programs import free_tcp_endpoint, free_udp_port
 from scenarios.recordings.replay import read_flights
+from tests.integration.observer import PASSES_SOON
 from tests.integration.programs import DEADLINE_S, Program, Programs, until
 
 CHROMIUM = shutil.which("chromium")
@@ -108,7 +109,7 @@ def open_world(page: Page, programs: Programs, *options: str) -> Program:
     """
     port, endpoint = free_udp_port(), free_tcp_endpoint()
     speaking = ("--mavlink", f"udpout:127.0.0.1:{port}", "-l", endpoint)
-    programs.start("scenarios", "world", "straight_5", *speaking)
+    programs.start("scenarios", "world", PASSES_SOON, *speaking)
     listening = ("--mavlink", f"udpin:127.0.0.1:{port}", "-e", endpoint, "--use-sim-time")
     companion = programs.start("companion", *listening, *options)
     open_page(page, address_of(programs.start("scenarios", "view", "--port", "0", "-e", endpoint)))

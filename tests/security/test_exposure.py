@@ -31,12 +31,16 @@ def test_endpoints_beyond_this_machine_are_exposed_unless_they_are_encrypted_wit
 
 
 @pytest.mark.parametrize("endpoint", INSECURE)
-def test_endpoint_that_strangers_reach_is_refused_unless_it_is_wanted(endpoint: str) -> None:
+def test_endpoint_that_strangers_reach_is_refused(endpoint: str) -> None:
     for options in (ZenohOptions(listen=(endpoint,)), ZenohOptions(connect=(endpoint,))):
         with pytest.raises(UserError, match="--insecure"):
             open_session(options)
-    with open_session(ZenohOptions(connect=("tcp/192.0.2.5:7447",), insecure=True)):
-        pass
+
+
+def test_endpoint_that_strangers_reach_is_opened_where_it_is_wanted() -> None:
+    before = listening()
+    with open_session(ZenohOptions(listen=("tcp/0.0.0.0:0",), insecure=True)):
+        assert len(listening() - before) == 1
 
 
 @pytest.mark.parametrize(

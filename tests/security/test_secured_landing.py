@@ -15,7 +15,7 @@ from link.zenoh.keys import Keys
 from link.zenoh.session import ZenohOptions, ZenohSession, open_session
 from scenarios.processes.programs import free_udp_port
 from scenarios.recordings.result import LANDED
-from tests.integration.observer import Observer
+from tests.integration.observer import PASSES_SOON, Observer
 from tests.integration.programs import Programs, until
 from tests.security.secured import STRANGER, Secured, secured
 
@@ -88,7 +88,7 @@ def test_landing_by_the_shipped_files_is_told_to_no_stranger_and_ended_by_none(t
         return "--zenoh-config", str(files.file(name))
 
     with Programs() as programs, ExitStack() as stack:
-        programs.start("scenarios", "world", "straight_5", "--mavlink", f"udpout:{device}", *as_("vehicle"))
+        programs.start("scenarios", "world", PASSES_SOON, "--mavlink", f"udpout:{device}", *as_("vehicle"))
         operator_options = ZenohOptions(config_file=files.file("operator"))
         sessions: list[ZenohSession] = []
 
