@@ -221,7 +221,9 @@ class LandingStatus(Struct, frozen=True, kw_only=True):
     `height_above_pad_m`. `reason_code` names the reason without its numbers, for programs. `flown_by` is "companion"
     while the autopilot follows its setpoints, "failsafe" while one flies, else "other"; empty without an autopilot.
     `battery_share` is left, 0 to 1. `unverified` is what is believed of the pad's place since nothing that the drone
-    has can verify it. On the wire the fields of `links` stand beside the others.
+    has can verify it. `station_offset_m` is the station that is kept, ahead, left and up of the pad's centre in its
+    frame: farther out or higher than ordered where the vehicle's place is vague. On the wire the fields of `links`
+    stand beside the others.
     """
 
     stamp_ns: int
@@ -238,4 +240,5 @@ class LandingStatus(Struct, frozen=True, kw_only=True):
     battery_share: float | None = None
     contact_forecast: ContactForecast | None = None
     unverified: tuple[str, ...] = ()
+    station_offset_m: Vector3 | None = None
     links: LinkStatus = LinkStatus()

@@ -21,7 +21,7 @@ from companion.landing.steering.virtual_model import press_down, setpoint_at
 from companion.planning.guidance import PlanResult
 from companion.situation.phases import Phase
 from companion.situation.situation import Approach, Situation
-from link.messages import LandingStatus, Plan, PlannedPose
+from link.messages import LandingStatus, Plan, PlannedPose, Vector3
 from link.payloads import cdr, json_messages
 from link.zenoh.keys import Keys, Publication
 
@@ -103,7 +103,17 @@ def landing_status(memory: StepMemory, situation: Situation, config: CompanionCo
         battery_share=situation.autopilot.battery_share,
         contact_forecast=memory.forecast.contact,
         unverified=unverified(situation, config),
+        station_offset_m=_station_offset_m(memory),
     )
+
+
+def _station_offset_m(memory: StepMemory) -> Vector3 | None:
+    """Return where the station is that is kept now, None where none is."""
+    way = memory.sortie.way
+    if way is None or memory.progress.phase is not Phase.FOLLOW:
+        return None
+    ahead_m, left_m, up_m = way.end_m.tolist()
+    return ahead_m, left_m, up_m
 
 
 def _flown_by(autopilot: AutopilotView) -> str:

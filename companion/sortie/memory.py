@@ -81,12 +81,14 @@ class Way(Struct, frozen=True, kw_only=True, eq=False):
     """The way to a station.
 
     Attributes:
-        station: at its end.
+        station: that was ordered.
+        end_m: (3,) at its end, where that is kept: farther out or higher where the vehicle's place is vague.
         place_m: (3,) on it, ahead, left and up of the pad's centre, where the drone is to be now.
         at_ns: when that was so, monotonic.
     """
 
     station: Station
+    end_m: Array
     place_m: Array
     at_ns: int
 

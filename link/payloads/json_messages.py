@@ -129,6 +129,10 @@ class _LandingStatus(_Report):
     unverified: Annotated[
         tuple[str, ...], Field(description="what of the pad's place is believed since nothing can verify it, in words")
     ]
+    station_offset_m: Annotated[
+        Coordinates | None,
+        Field(description="station that is kept: ahead, left, up of the pad's centre in its frame, m; null if none is"),
+    ]
 
 
 def _status_schema() -> dict[str, Any]:

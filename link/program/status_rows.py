@@ -17,6 +17,7 @@ def status_rows(status: LandingStatus | None) -> list[Row]:
         ("east, north, up", _vector(position, "m")),
         ("relative velocity", _vector(velocity, "m/s")),
         ("time to touchdown", number(None if status is None else status.time_to_contact_s, "s")),
+        ("keeps ahead, left, up", _vector(None if status is None else status.station_offset_m, "m")),
         ("contact, if it goes on", _forecast(None if status is None else status.contact_forecast)),
         ("age of the last fix", number(None if status is None else status.fix_age_s, "s")),
         ("refused data", "-" if status is None or not status.links.refused else status.links.refused),

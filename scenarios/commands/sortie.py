@@ -24,6 +24,8 @@ _WIDTHS = {
     "error_straight_m": 18,
     "error_bend_m": 14,
     "error_max_m": 13,
+    "moved_m": 9,
+    "refused": 9,
     "tier": 8,
     "lift_off_s": 12,
     "return_from_m": 15,

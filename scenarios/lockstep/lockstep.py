@@ -10,7 +10,7 @@ from companion.runtime.build import build_node
 from companion.runtime.node import CompanionNode
 from companion.situation.phases import Phase
 from link.memory_link import MemoryLink
-from link.messages import Command
+from link.messages import Command, CommandReply
 from link.recording.recorder import Recorder
 from link.zenoh.keys import Keys
 from scenarios.config import Scenario
@@ -100,7 +100,7 @@ class Lockstep:
         if node.poll(local_ns) and node.outputs is not None:
             self.recording.add(node.outputs.status)
             self._compare(node, t_ns)
-        node.take_replies()
+        self._take(node.take_replies())
         self._send(node.take_frames(), t_ns)
 
     def _hear(self, data: bytes) -> None:
@@ -115,6 +115,9 @@ class Lockstep:
                 node.request(Command.START)
         if self._watch.must_break_off(self.recording):
             node.request(Command.ABORT)
+
+    def _take(self, replies: Sequence[CommandReply]) -> None:
+        """Take the answers to the commands; that to a landing's start is its phase."""
 
     def _compare(self, node: CompanionNode, t_ns: int) -> None:
         """Compare the estimate with the truth, from time to time."""

@@ -5,11 +5,12 @@ while the vehicle drives on, until that is 300 m away or a minute has passed; th
 """
 
 import math
+from collections.abc import Sequence
 
 from companion.config.companion import CompanionConfig
 from companion.runtime.node import CompanionNode
 from companion.situation.phases import Phase
-from link.messages import Command, Station, StationFrame
+from link.messages import Command, CommandReply, Station, StationFrame
 from scenarios.config import Scenario
 from scenarios.lockstep.lockstep import Lockstep
 from scenarios.simulation.noise import Seed
@@ -50,6 +51,7 @@ class SortieFlight(Lockstep):
         self.return_from_m: float | None = None
         self._on_deck_ns = 0
         self.orders: list[tuple[int, Station]] = []
+        self.refused: dict[int, str] = {}
         self.times_ns: dict[str, int] = {}
         self.contacts_ns: list[int] = []
         self._next_ns = 0
@@ -90,6 +92,12 @@ class SortieFlight(Lockstep):
                 node.request(Command.RETURN)
             case _:
                 pass
+
+    def _take(self, replies: Sequence[CommandReply]) -> None:
+        """Take note of a station that is refused, and when it was ordered; the one before it is kept then."""
+        for reply in replies:
+            if self.orders and "hold" not in self.times_ns and not reply.accepted:
+                self.refused[self.orders[-1][0]] = reply.reason
 
     def _mark(self, what: str) -> None:
         self.times_ns[what] = self.simulation.t_ns

@@ -64,6 +64,8 @@ def lost_sortie(task: SortieTask, why: str) -> FlownSortie:
         error_straight_m=None,
         error_bend_m=None,
         error_max_m=None,
+        moved_m=None,
+        refused=0,
         tier=Tier.UNSAFE,
         tier_reason=why,
         lift_off_s=None,

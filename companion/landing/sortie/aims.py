@@ -47,11 +47,11 @@ def advance_way(memory: StepMemory, s: Situation, limits: FlightLimits, config: 
     keep_out, ahead = keep_out_now(pad, config), ahead_rad(sortie.station.frame, pad, sortie.ahead_rad)
     here, way = turned(offset_now(pad, reference, s), -ahead), sortie.way
     if way is None or way.station != sortie.station or not is_clear(here, way.place_m, keep_out):
-        way = Way(station=sortie.station, place_m=here, at_ns=s.monotonic_ns)
+        way = Way(station=sortie.station, end_m=here, place_m=here, at_ns=s.monotonic_ns)
     dt_s = min((s.monotonic_ns - way.at_ns) * 1e-9, STEP_MAX_S)
     wanted, keep_out, rates = _ends_at(way, ahead, pad, limits, config)
     place = way_to(way.place_m, wanted, keep_out, np.array([0.0, dt_s]), rates)[-1]
-    way = replace(way, place_m=np.asarray(place), at_ns=s.monotonic_ns)
+    way = replace(way, end_m=wanted, place_m=np.asarray(place), at_ns=s.monotonic_ns)
     return replace(memory, sortie=replace(sortie, way=way))
 
 

@@ -19,7 +19,7 @@ SOFT_M_S = 0.75
 
 @pytest.mark.slow
 @pytest.mark.parametrize("firmware", FIRMWARES)
-@pytest.mark.parametrize("seed", (1, 2))
+@pytest.mark.parametrize("seed", [1, 2])
 def test_pad_is_met_softly_though_the_drones_own_height_wanders(seed: int, firmware: FirmwareName) -> None:
     changes = [f"sensors.own_state.height_std_m={HEIGHT_STD_M}"]
     changes += [f"sensors.range_finder.{key}={value}" for key, value in DATA_SHEET.items()]

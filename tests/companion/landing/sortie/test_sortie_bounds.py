@@ -115,6 +115,10 @@ def station_of(std_m: float, apart_std_m: float, frames: str) -> list[float]:
     flight.run(10.0)
     offset = np.array(flight.own.position_enu_m) - flight.vehicle.at(flight.own.t_ns) - np.array([0.0, 0.0, GEAR_M])
     x, y, height_m = offset.tolist()
+    assert flight.outputs is not None
+    told = flight.outputs.status.station_offset_m
+    assert told is not None
+    assert [math.hypot(*told[:2]), told[2]] == pytest.approx([math.hypot(x, y), height_m], abs=0.1)
     return [math.hypot(x, y), height_m]
 
 
