@@ -38,7 +38,7 @@ _FIRST_NUMBERS = re.compile(r"\d+\.\d+\.\d+")
 def component_metadata(boot_ms: int) -> Message:
     """Return the COMPONENT_METADATA, `boot_ms` after the autopilot's start."""
     return mavlink.mavlink_map[COMPONENT_METADATA_ID](
-        boot_ms, checksum(general_file()), f"mftp://{GENERAL_PATH}".encode()
+        boot_ms & 0xFFFF_FFFF, checksum(general_file()), f"mftp://{GENERAL_PATH}".encode()
     )
 
 

@@ -195,7 +195,7 @@ class MavlinkSession:
         return self._peer.take_requests()
 
     def _take(self, message: Message, t_ns: int) -> list[Event]:
-        boot_ns = boot_time_ns(message)
+        boot_ns = boot_time_ns(message, self.clock.local_to_boot_ns(t_ns))
         if not self._peer.accepts(message) or (boot_ns and self._restarts.doubts(boot_ns, t_ns, self.clock)):
             self._filtered += 1
             return []

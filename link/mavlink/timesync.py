@@ -11,14 +11,25 @@ _FAST_PERIOD_NS = 100_000_000
 _FAST_COUNT = 20  # so many are asked so quickly at first, 2 s worth
 _PERIOD_NS = 500_000_000
 _CLOCK = ClockConfig()
+_BOOT_TURN_MS = 1 << 32
 _ASKED_MAX = 64  # questions under way; older ones are lost
 
 
-def boot_time_ns(message: Message) -> int:
-    """The time since boot that a message tells, 0 when it does not."""
+def boot_time_ns(message: Message, now_ns: int | None) -> int:
+    """The time since boot that a message tells, 0 when it does not.
+
+    Its 32 bits of milliseconds begin anew after 50 days. The message gets the time that counts on, the nearest to
+    `now_ns`, what the boot clock shows now if that is known.
+    """
     if message.get_msgId() == mavlink.MAVLINK_MSG_ID_TIMESYNC:
         return int(message.tc1) if _is_boot_time(message.tc1) else 0
-    return int(getattr(message, "time_boot_ms", 0)) * 1_000_000
+    told_ms = int(getattr(message, "time_boot_ms", 0))
+    if told_ms == 0:
+        return 0
+    turns = 0 if now_ns is None else round((now_ns / 1e6 - told_ms) / _BOOT_TURN_MS)
+    if turns > 0:
+        message.time_boot_ms = told_ms = told_ms + turns * _BOOT_TURN_MS
+    return told_ms * 1_000_000
 
 
 def _is_boot_time(tc1_ns: int) -> bool:

@@ -13,7 +13,13 @@ from zlib import crc32
 import pytest
 from pydantic import ValidationError
 
-from companion.component.metadata import GENERAL_PATH, PARAMETERS_PATH, general_file, parameters_file
+from companion.component.metadata import (
+    GENERAL_PATH,
+    PARAMETERS_PATH,
+    component_metadata,
+    general_file,
+    parameters_file,
+)
 from companion.component.parameters import PARAMETERS, value_of
 from companion.config.companion import CompanionConfig
 from link.ftp.wire import DATA_MAX, Error, Opcode
@@ -129,3 +135,7 @@ def test_parameter_is_described_as_the_configuration_has_it(place: int) -> None:
             table = {name: table}
         with pytest.raises(ValidationError):
             CompanionConfig.model_validate(table)
+
+
+def test_metadata_of_an_autopilot_that_runs_for_50_days_has_a_time_that_fits() -> None:
+    assert component_metadata((1 << 32) + 7).time_boot_ms == 7

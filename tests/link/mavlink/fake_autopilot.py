@@ -17,6 +17,7 @@ S = 1_000_000_000
 START_NS = 1_795_000_000 * S  # local time at which the tests begin
 UTC_AHEAD_NS = 37 * S + 123_456_789  # what the companion's clock is behind UTC
 BOOTED_NS = 20 * S  # time since boot at the beginning
+U32 = 0xFFFF_FFFF  # a boot time in milliseconds begins anew after it
 
 INT32 = mavlink.MAV_PARAM_TYPE_INT32
 REAL32 = mavlink.MAV_PARAM_TYPE_REAL32
@@ -72,10 +73,10 @@ class FakeAutopilot:
             # Whole milliseconds since boot, and the UTC at exactly that time, as clocks with no error would say.
             at_ns = self.boot_at_ns + round(boot_ms * MS / (1.0 + self.drift))
             unix_us = (at_ns + UTC_AHEAD_NS) // 1000 if self.utc_known else 0
-            return mavlink.MAVLink_system_time_message(unix_us, boot_ms)
+            return mavlink.MAVLink_system_time_message(unix_us, boot_ms & U32)
         if message_id == mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION:
-            return mavlink.MAVLink_attitude_quaternion_message(boot_ms, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-        return mavlink.MAVLink_local_position_ned_message(boot_ms, 1.0, 2.0, -3.0, 0.1, 0.2, -0.3)
+            return mavlink.MAVLink_attitude_quaternion_message(boot_ms & U32, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        return mavlink.MAVLink_local_position_ned_message(boot_ms & U32, 1.0, 2.0, -3.0, 0.1, 0.2, -0.3)
 
     def receive(self, data: bytes, t_ns: int) -> None:
         for message in self.codec.decode(data):

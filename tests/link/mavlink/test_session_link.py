@@ -16,7 +16,17 @@ from link.mavlink.events import (
 from link.mavlink.requests import Retries
 from link.mavlink.session import MavlinkSession
 from link.mavlink.timesync import ClockSync
-from tests.link.mavlink.fake_autopilot import BOOTED_NS, MS, START_NS, UTC_AHEAD_NS, FakeAutopilot, Pair, S, of_kind
+from tests.link.mavlink.fake_autopilot import (
+    BOOTED_NS,
+    MS,
+    START_NS,
+    U32,
+    UTC_AHEAD_NS,
+    FakeAutopilot,
+    Pair,
+    S,
+    of_kind,
+)
 
 POSITION_ID = mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED
 
@@ -158,6 +168,35 @@ def test_a_restart_is_noticed_and_streams_and_clock_are_set_up_anew() -> None:
     assert restart.t_ns - restarted_ns < 3 * S
     assert restart.boot_before_ns > BOOTED_NS > restart.boot_now_ns
     assert run.autopilot.intervals_ns == {POSITION_ID: 20 * MS}
+    assert abs((run.session.clock.local_to_boot_ns(run.t_ns) or 0) - run.autopilot.boot_ns(run.t_ns)) < 2 * MS
+
+
+@pytest.mark.parametrize("booted_ms", [U32 - 3000, U32 + 3000, 3 * U32 + 5])
+def test_boot_time_goes_on_after_the_50_days_that_its_32_bits_last(booted_ms: int) -> None:
+    run = pair()
+    run.autopilot.boot_at_ns = START_NS - booted_ms * MS
+    run.session.request_interval(POSITION_ID, 50.0, run.t_ns)
+    run.run(1.0)
+    events = run.run(6.0)
+    assert of_kind(events, AutopilotRestarted) == []
+    told = [
+        one.message.time_boot_ms for one in of_kind(events, MessageReceived) if one.message.get_msgId() == POSITION_ID
+    ]
+    assert len(told) > 290
+    assert told == sorted(told)
+    assert told[-1] - booted_ms == pytest.approx(7000, abs=30)
+    true_utc_ns = run.t_ns + UTC_AHEAD_NS
+    assert abs((run.session.clock.boot_to_utc_ns(told[-1] * MS) or 0) - true_utc_ns) < 30 * MS
+
+
+def test_autopilot_that_restarts_after_50_days_is_heard_by_its_new_time() -> None:
+    run = pair()
+    run.autopilot.boot_at_ns = START_NS - (U32 + 10**8) * MS
+    run.session.request_interval(POSITION_ID, 50.0, run.t_ns)
+    run.run(4.0)
+    run.autopilot.restart(run.t_ns)
+    restart = of_kind(run.run(6.0), AutopilotRestarted)[-1]
+    assert restart.boot_now_ns < 3 * S
     assert abs((run.session.clock.local_to_boot_ns(run.t_ns) or 0) - run.autopilot.boot_ns(run.t_ns)) < 2 * MS
 
 
