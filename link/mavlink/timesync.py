@@ -11,25 +11,40 @@ _FAST_PERIOD_NS = 100_000_000
 _FAST_COUNT = 20  # so many are asked so quickly at first, 2 s worth
 _PERIOD_NS = 500_000_000
 _CLOCK = ClockConfig()
-_BOOT_TURN_MS = 1 << 32
+_MS_NS = 1_000_000
+_BOOT_TURN_NS = (1 << 32) * _MS_NS
+_COUNTS_ON_NS = 600 * 10**9  # longer than a link is silent in a flight, and far less than the 50 days
 _ASKED_MAX = 64  # questions under way; older ones are lost
 
 
 def boot_time_ns(message: Message, now_ns: int | None) -> int:
     """The time since boot that a message tells, 0 when it does not.
 
-    Its 32 bits of milliseconds begin anew after 50 days. The message gets the time that counts on, the nearest to
-    `now_ns`, what the boot clock shows now if that is known.
+    Most messages have 32 bits of milliseconds for it, which begin anew after 50 days; TIMESYNC has 64 bits. All are
+    taken by what 32 bits have room for, and where the clock runs over that they count on. The message gets this time.
+
+    Args:
+        message: any; that of an autopilot which has just started tells less than `now_ns`, and is left alone.
+        now_ns: what the boot clock shows now, None before the first round trip.
     """
     if message.get_msgId() == mavlink.MAVLINK_MSG_ID_TIMESYNC:
-        return int(message.tc1) if _is_boot_time(message.tc1) else 0
-    told_ms = int(getattr(message, "time_boot_ms", 0))
-    if told_ms == 0:
+        if not _is_boot_time(message.tc1):
+            return 0
+        message.tc1 = _counted_on(message.tc1, now_ns)
+        return int(message.tc1)
+    told_ms = getattr(message, "time_boot_ms", 0)
+    if not told_ms:
         return 0
-    turns = 0 if now_ns is None else round((now_ns / 1e6 - told_ms) / _BOOT_TURN_MS)
-    if turns > 0:
-        message.time_boot_ms = told_ms = told_ms + turns * _BOOT_TURN_MS
-    return told_ms * 1_000_000
+    message.time_boot_ms = _counted_on(told_ms * _MS_NS, now_ns) // _MS_NS
+    return int(message.time_boot_ms) * _MS_NS
+
+
+def _counted_on(told_ns: int, now_ns: int | None) -> int:
+    boot_ns = told_ns % _BOOT_TURN_NS
+    if now_ns is None:
+        return boot_ns
+    counted_ns = boot_ns + round((now_ns - boot_ns) / _BOOT_TURN_NS) * _BOOT_TURN_NS
+    return counted_ns if abs(counted_ns - now_ns) < _COUNTS_ON_NS else boot_ns
 
 
 def _is_boot_time(tc1_ns: int) -> bool:
