@@ -71,7 +71,7 @@ class VehicleEstimate(Struct, frozen=True, kw_only=True, eq=False):
         covariance: (9, 9) of position, velocity, acceleration, in that order.
         yaw_rad: heading of V about W's z, None while it cannot be told (at rest, never measured).
         yaw_rate_rad_s: None likewise.
-        mixture: what each of several models holds, of which `covariance` is that of all; None of a single one.
+        mixture: what each of several models holds of the pad's centre; None of a single one.
     """
 
     t_ns: int

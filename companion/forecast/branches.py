@@ -51,7 +51,14 @@ class Events(Struct, frozen=True, kw_only=True, eq=False):
 
 
 def make_events(
-    numbers: Draws, drivers: Drivers, *, within_s: float, speed_m_s: float, left_m_s2: float, stands: bool
+    numbers: Draws,
+    drivers: Drivers,
+    *,
+    within_s: float,
+    unseen_s: float,
+    speed_m_s: float,
+    left_m_s2: float,
+    stands: bool,
 ) -> Events:
     """Return what happens.
 
@@ -59,12 +66,14 @@ def make_events(
         numbers: random ones.
         drivers: what is known of them.
         within_s: from the newest datum to the last possible contact.
+        unseen_s: before the newest datum, in which a turn may have begun that no datum shows.
         speed_m_s: of the vehicle.
         left_m_s2: its acceleration to the left.
         stands: whether it does.
     """
     u = numbers.uniforms
-    onset_s = within_s * u[:, 0]
+    turns_s = within_s + unseen_s
+    onset_s = np.where(numbers.branch == TURN, turns_s * u[:, 0] - unseen_s, within_s * u[:, 0])
     size, ramp_s = np.zeros(len(u)), np.full(len(u), _BRAKE_RAMP_S)
     slower, faster, turn = (numbers.branch == branch for branch in (SLOWER, FASTER, TURN))
     size[slower] = -_size_m_s2(drivers, SLOWS, u[slower], _slower_m_s2(u[slower, 2]))
@@ -72,15 +81,15 @@ def make_events(
     size[faster] = _size_m_s2(drivers, up, u[faster], np.interp(u[faster, 2], _LEVELS, _FASTER_M_S2))
     new = _size_m_s2(drivers, TURNS, u[turn], np.interp(u[turn, 2], _LEVELS, _ASIDE_M_S2))
     new = np.minimum(new, _CURVATURE_MAX_PER_M * speed_m_s**2) * np.where(u[turn, 3] < 0.5, -1.0, 1.0)
-    # One that is in a bend leaves it as often as it takes another one.
-    size[turn] = np.where((u[turn, 6] < 0.5) & (abs(left_m_s2) > 0.5 * new.max(initial=0.0)), 0.0, new)
+    exits_hz = 0.0 if stands else drivers.exits_hz(left_m_s2, speed_m_s)
+    size[turn] = np.where(u[turn, 6] * (drivers.rate_hz(TURNS) + exits_hz) < exits_hz, 0.0, new)
     shortest_s, longest_s = _TURN_RAMP_S
     ramp_s[turn] = shortest_s * (longest_s / shortest_s) ** u[turn, 5]
     released_s = -_RELEASED_S * np.log(u[:, 1])
     return Events(
         kind=_KINDS[numbers.branch],
         event=np.column_stack([onset_s, size, ramp_s, released_s]),
-        weight=chances(drivers, within_s, stands=stands)[numbers.branch] * numbers.share,
+        weight=chances(drivers, within_s, turns_s, exits_hz, stands=stands)[numbers.branch] * numbers.share,
     )
 
 

@@ -22,6 +22,7 @@ _COMPARED = 10  # velocities, of a second, over which a receiver's error of 0.1 
 _APART_MAX_S = 2.0  # farther apart there was an outage
 _BEGINS_M_S2 = 1.0  # the least of the drivers' decelerations (odd.toml, `driver.stop_m_s2`)
 _ENDS_M_S2 = 0.5
+_RIGHT_ANGLE_RAD = 0.5 * math.pi
 _STANDS_M_S = 0.5  # over poor data a parked vehicle seems to move by 0.3 m/s
 
 
@@ -35,6 +36,7 @@ class Drivers(Struct, frozen=True, kw_only=True):
         stood_s: for how long standing.
         under_way: the acceleration of each kind that has not ended, 0 of one that has, (4,).
         left_m_s2: acceleration to the left a second before, for what turns in.
+        bends_s: for how long it has been driven through the same bend.
         seen_ns: UTC of the newest velocity that counts; None before the first.
     """
 
@@ -44,12 +46,23 @@ class Drivers(Struct, frozen=True, kw_only=True):
     stood_s: float = 0.0
     under_way: tuple[float, ...] = (0.0, 0.0, 0.0, 0.0)
     left_m_s2: float = 0.0
+    bends_s: float = 0.0
     seen_ns: int | None = None
 
     def rate_hz(self, kind: int) -> float:
         """Return the mean rate of a kind while the vehicle drives, of departures while it stands."""
         seen_s = self.stood_s if kind == DEPARTS else self.driven_s
         return (1.0 + self.counts[kind]) / (PRIOR_GAPS_S[kind] + seen_s)
+
+    def exits_hz(self, left_m_s2: float, speed_m_s: float) -> float:
+        """Return at which rate the bend ends that is driven through, 0 on a straight.
+
+        Before anything is seen of it, it turns by a right angle in the mean, as at a junction; one that goes on and on,
+        as a roundabout's or a circle's, ends the later.
+        """
+        if abs(left_m_s2) < _ENDS_M_S2:
+            return 0.0
+        return 1.0 / (_RIGHT_ANGLE_RAD * speed_m_s / abs(left_m_s2) + self.bends_s)
 
     def seen_share(self, kind: int) -> float:
         """Return which share of the next events of a kind is taken to be as hard as those seen."""
@@ -77,7 +90,13 @@ def update_drivers(drivers: Drivers, driven: tuple[Driven, ...]) -> Drivers:
     since_s = min((now[0] - drivers.seen_ns) * 1e-9, _APART_MAX_S)
     drivers = _forget(drivers, since_s, stands=later_m_s < _STANDS_M_S)
     share = min(since_s / passed_s, 1.0)
-    drivers = replace(drivers, left_m_s2=drivers.left_m_s2 + share * (left_m_s2 - drivers.left_m_s2), seen_ns=now[0])
+    goes_on = abs(left_m_s2) >= _ENDS_M_S2 and left_m_s2 * drivers.left_m_s2 >= 0.0
+    drivers = replace(
+        drivers,
+        left_m_s2=drivers.left_m_s2 + share * (left_m_s2 - drivers.left_m_s2),
+        bends_s=drivers.bends_s + since_s if goes_on else 0.0,
+        seen_ns=now[0],
+    )
     return _count(drivers, sizes)
 
 
@@ -107,12 +126,24 @@ def _count(drivers: Drivers, sizes_m_s2: tuple[float, ...]) -> Drivers:
     return replace(drivers, counts=tuple(counts), sizes_m_s2=tuple(sums), under_way=tuple(under_way))
 
 
-def chances(drivers: Drivers, within_s: float, *, stands: bool) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
-    """Return how likely the vehicle does nothing new, slows, speeds up (or departs), and turns in, (4,), in a time."""
+def chances(
+    drivers: Drivers, within_s: float, turns_s: float, exits_hz: float, *, stands: bool
+) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+    """Return how likely the vehicle does nothing new, slows, speeds up (or departs), and turns in, (4,).
+
+    Args:
+        drivers: what is known of them.
+        within_s: for how long anything may begin.
+        turns_s: for how long a turn may, out of a bend too.
+        exits_hz: at which rate a bend ends beside the turns that have been seen.
+        stands: whether the vehicle does.
+    """
     if stands:
-        rates = np.array([0.0, drivers.rate_hz(DEPARTS), 0.0])
+        expected = within_s * np.array([0.0, drivers.rate_hz(DEPARTS), 0.0])
     else:
-        rates = np.array([drivers.rate_hz(kind) for kind in (SLOWS, SPEEDS_UP, TURNS)])
-    total = float(rates.sum())
-    none = math.exp(-total * within_s)
-    return np.concatenate([[none], (1.0 - none) * rates / total])
+        expected = np.array([drivers.rate_hz(kind) for kind in (SLOWS, SPEEDS_UP, TURNS)])
+        expected[2] += exits_hz
+        expected *= [within_s, within_s, turns_s]
+    total = float(expected.sum())
+    none = math.exp(-total)
+    return np.concatenate([[none], (1.0 - none) * expected / total])

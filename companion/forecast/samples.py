@@ -26,7 +26,8 @@ class Follower(NamedTuple):
 
     `led_share` is of a change of the acceleration asked for what the lean follows at once: 1 where setpoints are led.
     `way_s` is how long the planner's shortest way takes. The vehicle's velocity is known with an error of
-    `error_std_m_s` along an axis, which becomes another one `relearns_hz` times a second.
+    `error_std_m_s` along an axis, which becomes another one `relearns_hz` times a second. How the vehicle turns is told
+    by an antenna that passes `trails_s` after the pad; 0 where a sensor tells it.
     """
 
     stiffness_per_s2: float
@@ -39,6 +40,7 @@ class Follower(NamedTuple):
     push_std_m_s2: float
     way_s: float
     believes_s: float
+    trails_s: float
     relearns_hz: float
     error_std_m_s: float
     acceleration_max_m_s2: float

@@ -143,14 +143,14 @@ class ImmModel:
         return replace(recovered, driving=steady_driving.without_pair(recovered.driving))
 
     def describe(self, state: ImmState, t_ns: int) -> VehicleEstimate:
-        """Return the mixture of the modes; its parts are of a body that stands upright."""
-        motion, told_of = self._motion(state), told_modes(state)
-        x, told, covariance, *parts, heading_variance = forecasts.describe_modes(told_of, motion, self._known_variance)
-        off, modes_covariance = parts[0] - told, parts[1]
-        if state.deck is not None:
-            upright = forecasts.describe_modes(upright_modes(state), motion, self._known_variance)
-            off, modes_covariance = upright[3] - upright[1], upright[4]
-        known = heading_variance < self._known_variance
+        """Return the mixture of the modes; its parts are of the pad, on a body that stands upright."""
+        motion, told_of, known_variance = self._motion(state), told_modes(state), self._known_variance
+        x, told, covariance, *_, heading_variance = forecasts.describe_modes(told_of, motion, known_variance)
+        at_pad = forecasts.pad_modes(upright_modes(state), motion, known_variance)
+        without_arm = motion.copy()
+        without_arm[5:9] = 0.0
+        _, pad, _, pads, pads_covariance, _ = forecasts.describe_modes(at_pad, without_arm, known_variance)
+        known = heading_variance < known_variance
         return VehicleEstimate(
             t_ns=t_ns,
             position_enu_m=told[:3],
@@ -159,7 +159,7 @@ class ImmModel:
             covariance=0.5 * (covariance + covariance.T),
             yaw_rad=wrapped(float(x[HEADING])) if known else None,
             yaw_rate_rad_s=float(x[CURVATURE] * math.hypot(x[2], x[3])) if known else None,
-            mixture=Mixture(weight=state.modes[2], off=off, covariance=modes_covariance),
+            mixture=Mixture(weight=state.modes[2], off=pads - pad, covariance=pads_covariance),
         )
 
     def forecast(self, state: ImmState, t_ns: int, offset_s: Array) -> Forecast:

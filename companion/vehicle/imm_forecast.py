@@ -123,6 +123,17 @@ def forecast_modes(
 
 
 @compiled_kernel
+def pad_modes(modes: Modes, motion: Array, known_variance: float) -> Modes:
+    """Return the filter with the pad's place for the antenna's; without a known heading they are the same."""
+    lever = with_direction(motion, modes, known_variance)[5:8]
+    means, covariances, weights = modes
+    at_pad, known = means.copy(), covariances.copy()
+    for j in range(len(weights)):
+        at_pad[j], known[j] = shifted(means[j], covariances[j], lever, 1.0)
+    return at_pad, known, weights
+
+
+@compiled_kernel
 def describe_modes(
     modes: Modes, motion: Array, known_variance: float
 ) -> tuple[Array, Array, Array, Array, Array, float]:

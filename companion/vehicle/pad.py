@@ -40,10 +40,12 @@ class PadMounting(Struct, frozen=True, kw_only=True):
     Attributes:
         is_afloat: on the water.
         arm_m: from the antenna to its centre, horizontally; what is not 0 needs a heading.
+        ahead_m: of the antenna, along V; negative for a pad behind it.
     """
 
     is_afloat: bool = False
     arm_m: float = 0.0
+    ahead_m: float = 0.0
 
 
 class PadPath(Struct, frozen=True, kw_only=True, eq=False):
@@ -129,7 +131,11 @@ def pad_path(
         has_one_frame=has_one_frame,
         half_width_m=math.inf if pad is None else 0.5 * min(pad.size_m),
         height_m=0.0 if pad is None else pad.height_m,
-        mounting=PadMounting(is_afloat=pad is not None and pad.is_afloat, arm_m=math.hypot(lever_m[0], lever_m[1])),
+        mounting=PadMounting(
+            is_afloat=pad is not None and pad.is_afloat,
+            arm_m=math.hypot(lever_m[0], lever_m[1]),
+            ahead_m=lever_m[0],
+        ),
         grade=0.0 if forecast.grade is None else float(forecast.grade[0]),
         swing=deck,
         unplaced=NOT_DESCRIBED if pad is None else HEADING_UNKNOWN if _is_about(forecast, pad) else None,

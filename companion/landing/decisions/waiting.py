@@ -11,7 +11,6 @@ from companion.landing.steering.targets import changes_speed
 from companion.situation.own_drone import lowest_foot
 from companion.situation.phases import Phase
 from companion.situation.situation import Approach, Situation
-from link.messages import ContactForecast
 from link.records import replace
 
 _HELD_UP_M = 0.1  # above the height of waiting, down to which a descent sinks whether it is to wait or not
@@ -110,24 +109,25 @@ def _find_risk(memory: StepMemory, situation: Situation, config: CompanionConfig
     moment that can be seen from up here: waiting for one above cars that shake made contacts later and no better.
     """
     contact, pad, has_begun = memory.forecast.contact, situation.pad, memory.forecast.has_begun
-    if contact is None or pad is None or not _may_wait(memory, situation, config):
+    if contact is None or memory.forecast.risk is None or pad is None or not _may_wait(memory, situation, config):
         return None
     if pad.swing is not None and (has_begun or contact.in_s is None or contact.in_s > math.pi / pad.swing.heave_rad_s):
         return None
-    most = config.descent.risk.turns_back_min if has_begun else config.descent.risk.begins_max
-    return Cause(Reason.MOMENT_RISKY, (most,)) if contact.unsafe > most else None
+    risk, limits = memory.forecast.risk, config.descent.risk
+    risk, most = (contact.unsafe, limits.turns_back_min) if has_begun else (risk, limits.begins_max)
+    return Cause(Reason.MOMENT_RISKY, (most,)) if risk > most else None
 
 
-def is_moment_quiet(contact: ContactForecast | None, situation: Situation, config: CompanionConfig) -> bool:
-    """Return whether a descent that has come to the height of waiting is to go on by its forecast.
+def is_moment_quiet(risk: float | None, situation: Situation, config: CompanionConfig) -> bool:
+    """Return whether a descent that has come to the height of waiting is to go on by the risk of its contact.
 
     A ship's deck is decided on once for all: one that judged again all the way down would turn back where a new wave is
     as near as the pad.
     """
     relative = situation.approach
-    if contact is None or relative is None or relative.height_m > _waiting_height_m(situation, config) + _HELD_UP_M:
+    if risk is None or relative is None or relative.height_m > _waiting_height_m(situation, config) + _HELD_UP_M:
         return False
-    return contact.unsafe <= config.descent.risk.begins_max
+    return risk <= config.descent.risk.begins_max
 
 
 def waits_for_calm(memory: StepMemory, situation: Situation, config: CompanionConfig) -> bool:

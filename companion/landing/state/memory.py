@@ -162,8 +162,10 @@ class ForecastMemory(Struct, frozen=True, kw_only=True, eq=False):
         is_committed: it was made below the commit height, where nothing is waited for any more.
         drivers: how the vehicle's driver drives.
         gusts: how hard the air pushes the drone.
+        risk: that a contact is unsafe if it comes to one, a mean of the last forecasts; None while that is not seen.
         has_begun: this descent has left the height of waiting at a quiet moment; it holds until the descent ends.
         acceleration_ns: when the vehicle last told its acceleration, monotonic; None if it never did.
+        turning_ns: likewise its heading, or how fast it turns.
     """
 
     contact: ContactForecast | None = None
@@ -171,8 +173,10 @@ class ForecastMemory(Struct, frozen=True, kw_only=True, eq=False):
     is_committed: bool = False
     drivers: Drivers = field(default_factory=Drivers)
     gusts: Gusts = field(default_factory=Gusts)
+    risk: float | None = None
     has_begun: bool = False
     acceleration_ns: int | None = None
+    turning_ns: int | None = None
 
 
 class StepMemory(Struct, frozen=True, kw_only=True, eq=False):

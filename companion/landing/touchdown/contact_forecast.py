@@ -29,6 +29,9 @@ from link.messages import ContactForecast
 from link.records import replace
 
 _PERIOD_S = 0.1  # between two of them above the commit height; below it each step that knows of a brake counts
+_TURNING = frozenset({Quantity.HEADING, Quantity.YAW_RATE})
+_UNSEEN_MAX = 0.5  # of the ways on wait or break off: then most of what a contact would be is not seen yet
+_RISK_MEAN_S = 0.5  # in which some five new fixes make an estimate's errors others
 _AGE_MAX_S = 1.0  # of data, beyond which the landing is broken off anyway
 
 
@@ -36,26 +39,42 @@ def update_forecast(memory: StepMemory, situation: Situation, inputs: StepInputs
     """Return the memory with the forecast of this step, None in a phase that does not descend."""
     now_ns, known = situation.monotonic_ns, _update_known(memory, situation, inputs)
     if memory.progress.phase is not Phase.DESCEND:
-        return replace(memory, forecast=replace(known, contact=None, made_ns=None, is_committed=False, has_begun=False))
+        none = replace(known, contact=None, made_ns=None, is_committed=False, has_begun=False, risk=None)
+        return replace(memory, forecast=none)
     relative = situation.approach
     is_low = relative is not None and relative.height_m < system.config.descent.commit_height_m
     if not is_low and known.made_ns is not None and now_ns - known.made_ns < round(_PERIOD_S * 1e9):
         return replace(memory, forecast=known)
     memory = replace(memory, forecast=replace(known, made_ns=now_ns, is_committed=is_low))
     contact = forecast_contact(memory, situation, inputs, system)
-    begins = known.has_begun or is_moment_quiet(contact, situation, system.config)
-    return replace(memory, forecast=replace(memory.forecast, contact=contact, has_begun=begins))
+    risk = _risk(known.risk, contact, situation)
+    begins = known.has_begun or (risk is not None and is_moment_quiet(risk, situation, system.config))
+    return replace(memory, forecast=replace(memory.forecast, contact=contact, risk=risk, has_begun=begins))
+
+
+def _risk(before: float | None, contact: ContactForecast | None, situation: Situation) -> float | None:
+    """Return the risk of a contact, if it comes to one, None while most ways on end before it.
+
+    An estimate's own errors have it go up and down by half of itself. Whoever begins as soon as it is small enough once
+    takes an error for a quiet moment, so it is a mean, but over a deck that swings: there moments are short.
+    """
+    if contact is None or contact.broken_off > _UNSEEN_MAX:
+        return None
+    now = contact.unsafe / (1.0 - contact.broken_off)
+    swings = situation.pad is not None and situation.pad.swing is not None
+    return now if before is None or swings else before + _PERIOD_S / _RISK_MEAN_S * (now - before)
 
 
 def _update_known(memory: StepMemory, situation: Situation, inputs: StepInputs) -> ForecastMemory:
     """Return what forecasts are made from, with what this step shows of driver, gusts and inertial unit."""
     before = memory.forecast
-    is_told = any(one.quantity is Quantity.ACCELERATION for one in inputs.vehicle.measurements)
+    told = {one.quantity for one in inputs.vehicle.measurements}
     return replace(
         before,
         drivers=update_drivers(before.drivers, memory.vehicle.hindsight.driving.driven),
         gusts=_gusts(memory, inputs),
-        acceleration_ns=situation.monotonic_ns if is_told else before.acceleration_ns,
+        acceleration_ns=situation.monotonic_ns if Quantity.ACCELERATION in told else before.acceleration_ns,
+        turning_ns=situation.monotonic_ns if told & _TURNING else before.turning_ns,
     )
 
 
@@ -90,16 +109,18 @@ def forecast_contact(
     deck = draw_deck(pad, way_down.contact_s, numbers.tilts)
     late_s = memory.vehicle.hindsight.lateness_s or age_s
     delay_s = late_s + 0.5 / config.setpoints.rate_hz + inputs.link_delay.mean_s + inputs.link_delay.std_s * errors.late
-    speed_m_s = float(course.speed_m_s[0])
+    vehicle = as_driven(errors.vehicle, memory.vehicle.hindsight.driving, course.direction[0], stands=stands)
+    error_std_m_s = math.sqrt(float(np.mean(np.square(vehicle[:, 1]))))
+    drone = follower_of(memory, situation, inputs, config, relearns_hz=relearns_hz(then), error_std_m_s=error_std_m_s)
     events = make_events(
         numbers,
         memory.forecast.drivers,
         within_s=age_s + way_down.lasts_s,
-        speed_m_s=speed_m_s,
+        unseen_s=2.0 * max(drone.trails_s, 0.0),  # for so long a trailing antenna has not turned more than before
+        speed_m_s=float(course.speed_m_s[0]),
         left_m_s2=float(course.left_m_s2[0]),
         stands=stands,
     )
-    vehicle = as_driven(errors.vehicle, memory.vehicle.hindsight.driving, course.direction[0], stands=stands)
     samples = Samples(
         vehicle=vehicle,
         kind=events.kind,
@@ -110,8 +131,6 @@ def forecast_contact(
         deck=deck,
         pushes=numbers.pushes,
     )
-    error_std_m_s = math.sqrt(float(np.mean(np.square(vehicle[:, 1]))))
-    drone = follower_of(memory, situation, inputs, config, relearns_hz=relearns_hz(then), error_std_m_s=error_std_m_s)
     descent = Descent(
         course=course,
         drone=drone,

@@ -101,22 +101,24 @@ def _draw_vehicle(then: VehicleEstimate, pad: PadPath, normals: Array, uniforms:
 
     A model that is hardly likely holds for few samples. As a part of one covariance it would widen them all.
     """
-    mixture = then.mixture
-    if mixture is None:
-        mixture = Mixture(weight=np.ones(1), off=np.zeros((1, 9)), covariance=then.covariance[None])
-    apart_m2 = frames_apart_m2(pad)
-    # By so much is the pad's place less well known than the antenna's.
-    turned_m2 = np.maximum(pad.position_std_m[0] ** 2 - then.covariance.diagonal()[:3], 0.0)
+    mixture, apart_m2 = then.mixture or _as_one(then, pad), frames_apart_m2(pad)
     of_model = np.searchsorted(np.cumsum(mixture.weight)[:-1], uniforms)
     vehicle = np.empty_like(normals)
     for model, (off, stated) in enumerate(zip(mixture.off, mixture.covariance, strict=True)):
         covariance = stated.copy()
         for axis in range(3):
-            stated_m2 = covariance[axis, axis] + turned_m2[axis]
-            covariance[axis, axis] = max(stated_m2 - apart_m2[axis], _PLACE_STD_MIN_M**2)
+            covariance[axis, axis] = max(covariance[axis, axis] - apart_m2[axis], _PLACE_STD_MIN_M**2)
         drawn = of_model == model
         vehicle[drawn] = off + normals[drawn] @ _root(covariance).T
     return vehicle
+
+
+def _as_one(then: VehicleEstimate, pad: PadPath) -> Mixture:
+    """Return the estimate of a filter of one model; by the heading the pad's place is less well known than it tells."""
+    covariance = then.covariance.copy()
+    turned_m2 = np.maximum(pad.position_std_m[0] ** 2 - covariance.diagonal()[:3], 0.0)
+    covariance[:3, :3] += np.diag(turned_m2)
+    return Mixture(weight=np.ones(1), off=np.zeros((1, 9)), covariance=covariance[None])
 
 
 def as_driven(vehicle: Array, driving: Driving, direction: Array, *, stands: bool) -> Array:

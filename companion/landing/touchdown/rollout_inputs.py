@@ -28,6 +28,7 @@ _WAITS_STEPS = math.ceil(_WAITS_MAX_S / DT_S)
 _SLOW_M_S = 0.3  # slower than this a vehicle has no direction but its heading
 # Lag with which an acceleration is believed: velocities at 10 Hz show a brake in 0.3 s, an accelerometer at once.
 _BELIEVES_S, _BELIEVES_BY_SENSOR_S = 0.3, 0.1
+_STEERS_M_S = 1.0  # slower than this a vehicle has no course that an antenna could show
 _WAY_LAGS = 7.0
 _SENSOR_HOLD_NS = 1_000_000_000
 
@@ -160,8 +161,6 @@ def follower_of(
         raise ValueError("no autopilot flies")
     cascade, limits = inputs.response.cascade, inputs.limits
     level_m_s2, level_below_m = level_end(situation.pad, situation.approach, inputs, config)
-    told_ns = memory.forecast.acceleration_ns
-    is_told = told_ns is not None and inputs.monotonic_ns - told_ns < _SENSOR_HOLD_NS
     return Follower(
         stiffness_per_s2=cascade.stiffness_per_s2,
         damping_per_s=cascade.damping_per_s,
@@ -172,7 +171,8 @@ def follower_of(
         drag_per_s=DRAG_PER_S,
         push_std_m_s2=memory.forecast.gusts.push_std_m_s2,
         way_s=way_time_s(cascade, config.guidance.mpc.intercept_time_min_s),
-        believes_s=_BELIEVES_BY_SENSOR_S if is_told else _BELIEVES_S,
+        believes_s=_BELIEVES_BY_SENSOR_S if _is_told(memory.forecast.acceleration_ns, inputs) else _BELIEVES_S,
+        trails_s=_trails_s(memory, situation, inputs),
         relearns_hz=relearns_hz,
         error_std_m_s=error_std_m_s,
         acceleration_max_m_s2=limits.acceleration_max_m_s2,
@@ -180,6 +180,20 @@ def follower_of(
         level_m_s2=level_m_s2,
         level_below_m=level_below_m,
     )
+
+
+def _is_told(told_ns: int | None, inputs: StepInputs) -> bool:
+    return told_ns is not None and inputs.monotonic_ns - told_ns < _SENSOR_HOLD_NS
+
+
+def _trails_s(memory: StepMemory, situation: Situation, inputs: StepInputs) -> float:
+    """Return how long after the pad the antenna passes that tells how the vehicle turns, 0 where a sensor does."""
+    pad = situation.pad
+    if pad is None or pad.yaw_rad is None or _is_told(memory.forecast.turning_ns, inputs):
+        return 0.0
+    east_m_s, north_m_s = pad.velocity_enu_m_s[0, :2].tolist()
+    ahead_m_s = math.cos(pad.yaw_rad) * east_m_s + math.sin(pad.yaw_rad) * north_m_s
+    return pad.mounting.ahead_m / math.copysign(max(abs(ahead_m_s), _STEERS_M_S), ahead_m_s)
 
 
 def rules_of(memory: StepMemory, relative: Approach, inputs: StepInputs, config: CompanionConfig) -> Rules:

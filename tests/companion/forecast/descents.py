@@ -19,6 +19,7 @@ DRONE = Follower(
     push_std_m_s2=0.0,
     way_s=1.4,
     believes_s=0.3,
+    trails_s=0.0,
     relearns_hz=0.0,
     error_std_m_s=0.0,
     acceleration_max_m_s2=5.0,

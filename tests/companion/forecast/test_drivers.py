@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from companion.forecast.branches import NOTHING, SLOWER, make_events
+from companion.forecast.branches import NOTHING, SLOWER, TURN, make_events
 from companion.forecast.draws import draws
 from companion.forecast.drivers import DEPARTS, PRIOR_GAPS_S, SLOWS, TURNS, Drivers, chances, update_drivers
 from companion.vehicle.hindsight import Driven
@@ -51,11 +51,32 @@ def test_a_bend_counts_as_a_turn_and_a_departure_not_as_speeding_up() -> None:
     assert departed.rate_hz(DEPARTS) > 0.15
 
 
+def test_a_bend_ends_after_a_right_angle_until_it_has_gone_on_for_longer() -> None:
+    turning, straight = seen([9.0] * 50, turn_rad_s=0.25), seen([9.0] * 50)
+    circling = seen([9.0] * 300, turn_rad_s=0.25)
+    assert 0.0 < 1.0 / turning.exits_hz(9.0 * 0.25, 9.0) - 0.5 * math.pi / 0.25 < 3.0
+    assert 1.0 / circling.exits_hz(9.0 * 0.25, 9.0) > 30.0
+    assert straight.bends_s == straight.exits_hz(0.1, 9.0) == 0.0
+
+
+def test_a_bend_that_is_driven_through_is_left_more_often_than_another_one_begins() -> None:
+    numbers = draws()
+    turns = numbers.branch == TURN
+    events = make_events(numbers, Drivers(), within_s=1.5, unseen_s=0.4, speed_m_s=6.0, left_m_s2=2.5, stands=False)
+    assert np.mean(events.event[turns, 1] == 0.0) > 0.8
+    assert events.event[turns, 0].min() == pytest.approx(-0.4, abs=0.05)
+    assert events.event[~turns, 0].min() >= 0.0
+    on_straight = make_events(
+        numbers, Drivers(), within_s=1.5, unseen_s=0.4, speed_m_s=6.0, left_m_s2=0.0, stands=False
+    )
+    assert events.weight[turns].sum() > 5.0 * on_straight.weight[turns].sum()
+
+
 @pytest.mark.parametrize("stands", [True, False])
 def test_chances_and_weights_are_probabilities(stands: bool) -> None:
     numbers = draws()
-    assert chances(Drivers(), 1.7, stands=stands).sum() == pytest.approx(1.0)
-    events = make_events(numbers, Drivers(), within_s=1.7, speed_m_s=8.0, left_m_s2=0.3, stands=stands)
+    assert chances(Drivers(), 1.7, 2.1, 0.3, stands=stands).sum() == pytest.approx(1.0)
+    events = make_events(numbers, Drivers(), within_s=1.7, unseen_s=0.0, speed_m_s=8.0, left_m_s2=0.3, stands=stands)
     assert events.weight.sum() == pytest.approx(1.0)
     nothing = float(events.weight[numbers.branch == NOTHING].sum())
     rates_hz = [1.0 / PRIOR_GAPS_S[DEPARTS]] if stands else [1.0 / gap_s for gap_s in PRIOR_GAPS_S[:3]]
@@ -65,6 +86,7 @@ def test_chances_and_weights_are_probabilities(stands: bool) -> None:
 def test_brakes_have_the_domains_mean_and_its_heavy_tail() -> None:
     numbers = draws()
     slower = numbers.branch == SLOWER
-    sizes = make_events(numbers, Drivers(), within_s=2.0, speed_m_s=8.0, left_m_s2=0.0, stands=False).event[slower, 1]
+    events = make_events(numbers, Drivers(), within_s=2.0, unseen_s=0.0, speed_m_s=8.0, left_m_s2=0.0, stands=False)
+    sizes = events.event[slower, 1]
     assert -sizes.mean() == pytest.approx(0.88 * 2.53 + 0.12 * 6.75, abs=0.15)
     assert np.count_nonzero(sizes < -4.5) == pytest.approx(0.12 * slower.sum(), abs=1.0)

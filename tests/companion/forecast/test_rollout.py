@@ -8,7 +8,7 @@ import pytest
 from companion.core.data import GRAVITY_M_S2
 from companion.forecast import rollout
 from companion.forecast.rollout import roll_out
-from companion.forecast.samples import ALONG, CONTACT, DT_S, ERROR, IN_S, SINK, SPEED, TILT
+from companion.forecast.samples import ALONG, ASIDE, CONTACT, DT_S, ERROR, IN_S, SINK, SPEED, TILT
 from tests.companion.forecast.descents import HEIGHT_M, NEVER_S, RULES, SINK_M_S, descent, samples
 
 
@@ -37,6 +37,23 @@ def test_the_later_a_brake_is_known_the_faster_is_the_contact() -> None:
     ]
     first, second, third = (end[SPEED] for end in speeds_m_s)
     assert first < second < third
+
+
+BEND_ENDS = np.array([0.1, 2.5, 1.2, NEVER_S])
+"""Within 1.2 s by 2.5 m/s^2: a clothoid in town."""
+
+
+def test_a_bend_that_a_trailing_antenna_shows_is_met_the_farther_beside_the_pad() -> None:
+    ends = [roll_out(samples(kind=ASIDE, event=BEND_ENDS), descent(0.5, trails_s=s), 0.1)[0] for s in (-0.2, 0.0, 0.2)]
+    ahead, at_pad, behind = (end[SPEED] for end in ends)
+    assert ahead < at_pad < behind
+    assert ends[2][ERROR] > ends[1][ERROR]
+
+
+def test_an_acceleration_along_the_way_is_told_by_an_antenna_wherever_it_is() -> None:
+    brakes = samples(kind=ALONG, event=np.array([0.1, -2.0, 0.1, NEVER_S]))
+    ends = [roll_out(brakes, descent(0.5, trails_s=trails_s), 0.1)[0] for trails_s in (0.0, 0.2)]
+    assert ends[1] == pytest.approx(ends[0], abs=1e-9)
 
 
 def test_a_brake_ends_at_rest() -> None:
@@ -127,7 +144,19 @@ def test_machine_code_is_its_python(monkeypatch: pytest.MonkeyPatch) -> None:
     )
     uneven = descent(push_std_m_s2=0.5, relearns_hz=3.0, error_std_m_s=0.1)
     compiled = roll_out(several, uneven, 0.17)
-    for name in ("drive", "relearn", "_know", "_waits", "_breaks_off", "steer", "plan", "follow", "_touch", "_fly"):
+    for name in (
+        "drive",
+        "relearn",
+        "_believe",
+        "_know",
+        "_waits",
+        "_breaks_off",
+        "steer",
+        "plan",
+        "follow",
+        "_touch",
+        "_fly",
+    ):
         monkeypatch.setattr(rollout, name, getattr(rollout, name).py_func)
     plain = roll_out.py_func(several, uneven, 0.17)
     assert compiled == pytest.approx(plain, abs=1e-12)

@@ -8,6 +8,7 @@ from companion.config.companion import CompanionConfig
 from companion.config.estimation import EstimatorConfig, EstimatorKind, ImmConfig, ReceiversConfig
 from companion.core.data import Array, Measurement, Quantity
 from companion.vehicle.factory import make_estimator
+from companion.vehicle.imm_numbers import Deck
 from link.records import replace
 from tests.companion.vehicle.drives import (
     ANTENNA_TO_PAD_M,
@@ -58,7 +59,8 @@ def test_covariance_on_steady_roads_is_cautious_but_not_idle(truth: Drive) -> No
 
 
 def test_models_of_an_estimate_make_up_its_covariance() -> None:
-    estimate = ride(estimator(IMM, SAME_FRAME), circle(), NOMINAL, 1, from_s=8.0, until_s=8.1).estimates[0]
+    chosen = make_estimator(SAME_FRAME, Deck(), IMM)  # the pad at the antenna
+    estimate = ride(chosen, circle(), NOMINAL, 1, from_s=8.0, until_s=8.1).estimates[0]
     mixture = estimate.mixture
     assert mixture is not None
     assert mixture.weight.sum() == pytest.approx(1.0)
@@ -67,6 +69,19 @@ def test_models_of_an_estimate_make_up_its_covariance() -> None:
     scale = np.sqrt(np.diag(estimate.covariance))
     total = np.tensordot(mixture.weight, mixture.covariance + between, 1)
     assert total / np.outer(scale, scale) == pytest.approx(estimate.covariance / np.outer(scale, scale), abs=0.02)
+
+
+def test_models_of_an_estimate_are_of_the_pad_at_the_end_of_its_arm() -> None:
+    chosen = estimator(IMM, SAME_FRAME)
+    done = ride(chosen, circle(), NOMINAL, 1, from_s=8.0, until_s=8.1)
+    estimate, ahead = done.estimates[0], chosen.forecast(done.memory, done.estimates[0].t_ns, np.array([0.0, 0.1]))
+    assert estimate.mixture is not None
+    assert ahead is not None
+    weight, off = estimate.mixture.weight, estimate.mixture.off
+    variances = np.array([one.diagonal() for one in estimate.mixture.covariance])
+    std = np.sqrt(weight @ (variances + off**2))
+    assert std[:2] == pytest.approx(ahead.position_std_m[0, :2], rel=0.05)
+    assert std[3:5] != pytest.approx(np.sqrt(estimate.covariance.diagonal()[3:5]), rel=0.05)
 
 
 def test_offset_between_the_receivers_is_learnt_from_sightings() -> None:

@@ -35,7 +35,8 @@ def _over_swinging_deck(unsafe: float | None, *, has_begun: bool = False) -> tup
     memory = changed(
         StepMemory(), phase=Phase.DESCEND, cause=Cause(Reason.ALIGNED), hindsight=Hindsight(speed_std_m_s=0.05)
     )
-    memory = replace(memory, forecast=replace(memory.forecast, contact=contact, has_begun=has_begun))
+    known = replace(memory.forecast, contact=contact, risk=unsafe, has_begun=has_begun)
+    memory = replace(memory, forecast=known)
     return memory, situation(WAITING_M, pad=replace(pad_at(), swing=SWINGING))
 
 
@@ -88,4 +89,4 @@ def test_a_descent_that_has_begun_waits_for_no_smaller_risk() -> None:
     ids=["quiet", "risky", "high"],
 )
 def test_descent_decides_where_it_would_wait(height_m: float, unsafe: float, decides: bool) -> None:
-    assert is_moment_quiet(forecast_of(unsafe, IN_S), situation(height_m), CONFIG) == decides
+    assert is_moment_quiet(unsafe, situation(height_m), CONFIG) == decides

@@ -61,7 +61,8 @@ def _moving(height_m: float, speed_m_s: float) -> Situation:
 def test_status_says_what_a_descent_waits_for(
     facts: Situation, contact: ContactForecast | None, reason: Reason
 ) -> None:
-    memory = changed(StepMemory(), phase=Phase.DESCEND, cause=Cause(Reason.ALIGNED), hindsight=KNOWN, contact=contact)
+    memory = changed(StepMemory(), phase=Phase.DESCEND, cause=Cause(Reason.ALIGNED), hindsight=KNOWN)
+    memory = changed(memory, contact=contact, risk=None if contact is None else contact.unsafe)
     assert landing_status(memory, facts, CONFIG).reason_code == reason.name
 
 
@@ -79,7 +80,7 @@ def test_rollouts_of_a_descent_wait_for_the_speed_that_it_waits_for(speed_std_m_
 def _kept_risky(flight: Flight, duration_s: float) -> None:
     """Fly on above a vehicle over which every forecast says a great risk."""
     for _ in range(round(duration_s * 1e9 / TICK_NS)):
-        flight.memory = changed(flight.memory, contact=RISKY, made_ns=flight.monotonic_ns, has_begun=False)
+        flight.memory = changed(flight.memory, contact=RISKY, risk=1.0, made_ns=flight.monotonic_ns, has_begun=False)
         flight.step()
         if flight.phase is not Phase.DESCEND:
             return

@@ -8,17 +8,21 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from companion.autopilots.response import ResponseModel
 from companion.core.data import Array
-from companion.landing.state.memory import ModelMemory, StepMemory
+from companion.landing.state.memory import ForecastMemory, ModelMemory, StepMemory
+from companion.landing.state.step_data import StepInputs
 from companion.landing.touchdown.rollout_errors import draw_deck
-from companion.landing.touchdown.rollout_inputs import course_of, way_to_contact
-from companion.vehicle.pad import PadPath
+from companion.landing.touchdown.rollout_inputs import course_of, follower_of, way_to_contact
+from companion.vehicle.pad import PadMounting, PadPath
 from companion.vehicle.shake import PadSwing, tilted_deck
 from link.records import replace
-from tests.companion.facts import CONFIG, pad_at, reference_at, situation
+from tests.companion.autopilots.test_response import CASCADES, OFFSET_S
+from tests.companion.facts import CONFIG, NOW_NS, pad_at, reference_at, situation
 
 HEIGHT_M = 1.2
 GRADE = 0.08
+RESPONSE = ResponseModel(next(iter(CASCADES.values())), OFFSET_S)
 
 
 def slope_over(pad: PadPath) -> Array:
@@ -86,3 +90,15 @@ def test_deck_that_tilts_otherwise_is_off_by_what_the_tilt_makes_of_it(
 
 def test_deck_that_tells_no_tilt_is_off_by_nothing() -> None:
     assert not draw_deck(pad_at(), 0.5, np.ones((4, 4))).any()
+
+
+@pytest.mark.parametrize(("speed_m_s", "told", "trails_s"), [(6.0, False, 0.2), (-6.0, False, -0.2), (6.0, True, 0.0)])
+def test_antenna_trails_the_pad_unless_a_sensor_tells_how_the_vehicle_turns(
+    speed_m_s: float, trails_s: float, *, told: bool
+) -> None:
+    pad = replace(pad_at((speed_m_s, 0.0, 0.0)), yaw_rad=0.0, mounting=PadMounting(arm_m=1.2, ahead_m=1.2))
+    facts = situation(HEIGHT_M, pad=pad)
+    memory = StepMemory(forecast=ForecastMemory(turning_ns=NOW_NS - 10**8 if told else NOW_NS - 10**10))
+    inputs = StepInputs(t_ns=NOW_NS, monotonic_ns=NOW_NS, limits=CONFIG.limits.flight_limits(), response=RESPONSE)
+    drone = follower_of(memory, facts, inputs, CONFIG, relearns_hz=0.0, error_std_m_s=0.05)
+    assert drone.trails_s == pytest.approx(trails_s)
