@@ -1,8 +1,9 @@
 """How much a body sways whose vehicle does not tell its tilt, learnt from how its antenna moves; pure.
 
-Roll and pitch are states of the filter, damped oscillators (`imm_swing`). Where no inertial unit tells them, what sways
-an antenna would be taken for driving: on a lorry's roof 0.15 m/s twice a second, as if it braked by 2 m/s^2. Frequency
-and damping are those of a body on wheels; how much it sways depends on the road, and is learnt. By the law of total
+Heave, roll and pitch are states of the filter, damped oscillators (`imm_swing`). Where no inertial unit tells them,
+what sways an antenna would be taken for driving: on a lorry's roof 0.15 m/s twice a second, as if it braked by 2 m/s^2.
+And the grade of a smooth road that begins to climb would be taken for a heave, which soon swings back. Frequency and
+damping are those of a body on wheels; how much it sways depends on the road, and is learnt. By the law of total
 variance that of a rate is the mean of its square as far as it is known, and of what is left unknown. So a sway that
 nothing shows stays as it was taken to be. Of a wrong variance only that share shows by which a rate is known at all, so
 the step is as much larger.
@@ -22,7 +23,8 @@ from companion.vehicle.imm_swing import PITCH_RATE, ROLL_RATE
 
 _GAP_MAX_S = 1.0  # of velocities, after which the filter knows of no sway any more
 _SHOWS_MIN = 0.1  # of a wrong variance; what shows less is all chance
-_RATE_STD_MIN_RAD_S = 0.003  # less moves an antenna 4 m up by a centimetre a second
+HEAVE_RATE = 10  # in the state
+_RATE_STDS_MIN = (0.003, 0.003, 0.01)  # rad/s and m/s: less moves an antenna 4 m up by a centimetre a second
 
 
 class BodySway(Struct, frozen=True, kw_only=True):
@@ -30,17 +32,23 @@ class BodySway(Struct, frozen=True, kw_only=True):
 
     Attributes:
         rate_variances_rad2_s2: of roll and of pitch.
+        heave_rate_variance_m2_s2: of the heave.
         seen_s: for how long they were watched, what is longer ago counting less.
     """
 
     rate_variances_rad2_s2: tuple[float, float]
+    heave_rate_variance_m2_s2: float
     seen_s: float
 
 
 def first_sway(config: SwayConfig) -> BodySway:
     """Return what is taken for granted of a body that has not been watched."""
     variance = (config.tilt_std_rad * _frequency_rad_s(config)) ** 2
-    return BodySway(rate_variances_rad2_s2=(variance, variance), seen_s=config.prior_s)
+    return BodySway(
+        rate_variances_rad2_s2=(variance, variance),
+        heave_rate_variance_m2_s2=(config.heave_std_m * _frequency_rad_s(config)) ** 2,
+        seen_s=config.prior_s,
+    )
 
 
 def learn_sway(sway: BodySway, modes: Modes, dt_s: float, config: ImmConfig) -> BodySway:
@@ -57,17 +65,19 @@ def learn_sway(sway: BodySway, modes: Modes, dt_s: float, config: ImmConfig) -> 
     if not 0.0 < dt_s < _GAP_MAX_S or speed_m_s < config.heading.curvature_speed_min_m_s:
         return sway
     seen_s = sway.seen_s * math.exp(-dt_s / MEMORY_S) + dt_s
-    roll, pitch = (
+    kept = (*sway.rate_variances_rad2_s2, sway.heave_rate_variance_m2_s2)
+    learnt = (
         _learnt(before, float(weights @ means[:, i] ** 2), float(weights @ covariances[:, i, i]), dt_s / seen_s)
-        for i, before in zip((ROLL_RATE, PITCH_RATE), sway.rate_variances_rad2_s2, strict=True)
+        for i, before in zip((ROLL_RATE, PITCH_RATE, HEAVE_RATE), kept, strict=True)
     )
-    return BodySway(rate_variances_rad2_s2=(roll, pitch), seen_s=seen_s)
+    roll, pitch, heave = (max(one, least**2) for one, least in zip(learnt, _RATE_STDS_MIN, strict=True))
+    return BodySway(rate_variances_rad2_s2=(roll, pitch), heave_rate_variance_m2_s2=heave, seen_s=seen_s)
 
 
 def _learnt(before: float, known: float, unknown: float, weight: float) -> float:
     """Return the variance of a rate after another reading: the square of what is known counts, and what is not."""
     shows = max(1.0 - unknown / before, _SHOWS_MIN)
-    return max(before + min(weight / shows, 1.0) * (known + unknown - before), _RATE_STD_MIN_RAD_S**2)
+    return before + min(weight / shows, 1.0) * (known + unknown - before)
 
 
 def sway_variances(sway: BodySway, config: SwayConfig) -> Array:
@@ -77,10 +87,10 @@ def sway_variances(sway: BodySway, config: SwayConfig) -> Array:
 
 
 def sway_oscillators(sway: BodySway, config: SwayConfig) -> Array:
-    """Return angular frequency, rad/s, damping and standard deviation, rad, of roll and of pitch, (6,)."""
-    w = _frequency_rad_s(config)
+    """Return angular frequency, rad/s, damping and standard deviation of the heave's rate, of roll and pitch, (9,)."""
+    w, heave_m_s = _frequency_rad_s(config), math.sqrt(sway.heave_rate_variance_m2_s2)
     roll, pitch = (math.sqrt(variance) / w for variance in sway.rate_variances_rad2_s2)
-    return np.array([w, config.damping, roll, w, config.damping, pitch])
+    return np.array([w, config.damping, heave_m_s, w, config.damping, roll, w, config.damping, pitch])
 
 
 def _frequency_rad_s(config: SwayConfig) -> float:

@@ -106,5 +106,6 @@ def motion_of(state: ImmState, config: ImmConfig, numbers: Numbers) -> Array:
     if state.deck is not None:
         motion[1:4], motion[10:16] = state.deck.oscillators[:3], state.deck.oscillators[3:]
     elif state.sway is not None:
-        motion[10:16] = sway_oscillators(state.sway, config.sway)
+        oscillators = sway_oscillators(state.sway, config.sway)
+        motion[1:4], motion[10:16] = oscillators[:3], oscillators[3:]
     return motion

@@ -7,7 +7,7 @@ import pytest
 
 from companion.config.estimation import EstimatorConfig, ImmConfig
 from companion.core.data import Array, Measurement, Quantity
-from companion.vehicle.body_sway import BodySway, first_sway, learn_sway
+from companion.vehicle.body_sway import HEAVE_RATE, BodySway, first_sway, learn_sway
 from companion.vehicle.estimator import BufferedEstimator, DelayBuffer
 from companion.vehicle.imm import ImmModel
 from companion.vehicle.imm_mixing import Modes
@@ -44,6 +44,18 @@ def swaying(sway_m_s: float) -> Drive:
         position=truth.position + place[:, None] * along,
         velocity=truth.velocity + rate[:, None] * along,
     )
+
+
+CLIMBS_AT_S, CLIMBS_WITHIN_S = 12.0, 2.0
+
+
+def climbing(grade: float) -> Drive:
+    """Steady driving on a level road, and then within two seconds up a grade."""
+    truth = drive(15.0, lambda _: SPEED_M_S, lambda _: 0.0)
+    t = np.arange(len(truth.yaw)) * TRUTH_STEP_S
+    rate = SPEED_M_S * grade * np.clip((t - CLIMBS_AT_S) / CLIMBS_WITHIN_S, 0.0, 1.0)
+    up = np.column_stack([np.zeros((len(t), 2)), rate])
+    return replace(truth, position=truth.position + np.cumsum(up, axis=0) * TRUTH_STEP_S, velocity=truth.velocity + up)
 
 
 class Watcher:
@@ -114,10 +126,14 @@ def modes_of(rate_variance: float, rate_rad_s: float = 0.0, speed_m_s: float = 1
     return mean, covariance, np.ones(1)
 
 
-def learnt(sway: BodySway, modes: Modes, seconds: float) -> Array:
+def learn_all(sway: BodySway, modes: Modes, seconds: float) -> BodySway:
     for _ in range(round(seconds / 0.05)):
         sway = learn_sway(sway, modes, 0.05, CONFIG)
-    return np.array(sway.rate_variances_rad2_s2)
+    return sway
+
+
+def learnt(sway: BodySway, modes: Modes, seconds: float) -> Array:
+    return np.array(learn_all(sway, modes, seconds).rate_variances_rad2_s2)
 
 
 def test_sway_that_nothing_shows_stays_as_it_was_taken_to_be() -> None:
@@ -129,6 +145,29 @@ def test_sway_that_nothing_shows_stays_as_it_was_taken_to_be() -> None:
 def test_what_is_known_of_a_rate_and_what_is_not_make_its_variance_together() -> None:
     sway = first_sway(CONFIG.sway)
     assert learnt(sway, modes_of(0.0003, rate_rad_s=0.02), 600.0) == pytest.approx(np.full(2, 0.0007), rel=1e-3)
+
+
+def test_heave_is_a_smooth_roads_until_more_of_it_is_seen() -> None:
+    sway = first_sway(CONFIG.sway)
+    modes = modes_of(sway.rate_variances_rad2_s2[0])
+    modes[1][0, HEAVE_RATE, HEAVE_RATE] = sway.heave_rate_variance_m2_s2
+    assert math.sqrt(learn_all(sway, modes, 30.0).heave_rate_variance_m2_s2) == pytest.approx(0.047, abs=0.001)
+    modes[0][0, HEAVE_RATE], modes[1][0, HEAVE_RATE, HEAVE_RATE] = 0.2, 0.01
+    shaken = learn_all(sway, modes, 600.0)
+    assert shaken.heave_rate_variance_m2_s2 == pytest.approx(0.2**2 + 0.01, rel=1e-3)
+    assert shaken.rate_variances_rad2_s2 == pytest.approx(sway.rate_variances_rad2_s2)
+
+
+@pytest.mark.parametrize("grade", [0.12, -0.12])
+def test_road_that_begins_to_climb_is_no_heave(grade: float) -> None:
+    watcher = Watcher(climbing(grade))
+    watcher.until(CLIMBS_AT_S + 0.7)
+    forecast = watcher.chosen.forecast(watcher.memory, now_ns(CLIMBS_AT_S + 0.7), np.array([0.0, 0.5]))
+    assert forecast is not None
+    true_m_s = SPEED_M_S * grade * 0.7 / CLIMBS_WITHIN_S
+    now, later = forecast.velocity_enu_m_s[:, 2] / true_m_s
+    assert now == pytest.approx(1.0, abs=0.15)
+    assert later > 1.1  # a heave would swing back by then
 
 
 @pytest.mark.parametrize(("speed_m_s", "dt_s"), [(0.5, 0.05), (10.0, 5.0), (10.0, 0.0)])

@@ -15,12 +15,12 @@ from companion.config.estimation import (
     RampConfig,
     ReceiversConfig,
     SteadyConfig,
+    SwayConfig,
     TurningConfig,
 )
 from companion.core.data import Array, Measurement, Quantity
 from companion.vehicle import imm_kernels as kernels
 from companion.vehicle import imm_noise as noises
-from companion.vehicle.deck_motion import rate_std_m_s
 from companion.vehicle.estimator import DelayBuffer, fuse
 from companion.vehicle.filter_step import Gaussian
 from companion.vehicle.imm import ImmModel
@@ -48,6 +48,7 @@ IMM = ImmModel(
         ),
         receivers=ReceiversConfig(frame_offset_std_m=0.0, frame_offset_walk_m2_s=0.0, clock_std_s=0.0),
         heading=HeadingConfig(course_std_rad=1e3),
+        sway=SwayConfig(prior_s=1e4),  # known, and so not learnt
     )
 )
 NOISE = noises_with(
@@ -98,8 +99,9 @@ def drawn(covariance: Array, rng: np.random.Generator) -> Array:
 
 def wander(x: Array, rng: np.random.Generator) -> Array:
     """The turning model's own motion with its own noise, one step."""
-    sways, calm = IMM.config.on_road.heave, np.zeros((2, 2, 2))
-    heave, heave_noise = smooth_step(DT_S, 2.0 * np.pi * sways.frequency_hz, sways.damping, rate_std_m_s(sways))
+    sways, calm = IMM.config.sway, np.zeros((2, 2, 2))
+    frequency_rad_s = 2.0 * np.pi * sways.frequency_hz
+    heave, heave_noise = smooth_step(DT_S, frequency_rad_s, sways.damping, sways.heave_std_m * frequency_rad_s)
     Q = noises.process_noise(x, DT_S, NOISE, heave_noise, calm)
     after, _ = kernels.advance(x, DT_S, IMM.config.acceleration_decay_s, heave, calm)
     after[6] *= noises.curvature_left(float(np.hypot(x[2], x[3])), DT_S, NOISE)
