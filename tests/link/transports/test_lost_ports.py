@@ -51,3 +51,15 @@ def test_serial_port_that_goes_while_it_is_opened_is_one_clear_line(port: str, m
     monkeypatch.setattr(termios, "tcflush", fails_to_flush)
     with pytest.raises(UserError, match=r"cannot be opened as a serial port .*Input/output error"):
         open_transport(f"{port},57600")
+
+
+def test_server_to_which_there_is_no_way_is_tried_again_and_never_taken_for_connected() -> None:
+    with open_transport("tcp:255.255.255.255:5760") as client:  # a broadcast address, which TCP refuses at once
+        descriptors = set()
+
+        def is_tried_again() -> bool:
+            descriptors.add(client.fileno())
+            return client.receive(0.05) == b"" and client.statistics.errors > 2
+
+        until(is_tried_again)
+        assert descriptors == {-1}
