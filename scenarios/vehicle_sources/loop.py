@@ -2,7 +2,6 @@
 
 import signal
 import time
-from contextlib import ExitStack
 
 import structlog
 
@@ -73,8 +72,8 @@ class ReceiverLoop:
         """
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, self._stop)
-        with ExitStack() as stack:
-            transport = stack.enter_context(self._open())
+        transport = self._open()
+        try:
             health = Health(self._device, time.monotonic_ns())
             self._log.info("ready", device=self._device)
             while not self._stopping:
@@ -83,7 +82,9 @@ class ReceiverLoop:
                     self._stopping = self._stopping or transport.is_at_end
                 elif isinstance(transport, TcpClientTransport) and health.is_silent(time.monotonic_ns()):
                     health.closed(time.monotonic_ns())
-                    transport = self._open_again(transport, stack)
+                    transport = self._open_again(transport)
+        finally:
+            transport.close()
         self._service.stopping()
         self._service.close()
         self._log.info("stopped", fixes=self._fixes, unsendable=self._unsendable, **self._receiver.counts)
@@ -93,11 +94,11 @@ class ReceiverLoop:
     def _stop(self, *_: object) -> None:
         self._stopping = True
 
-    def _open_again(self, transport: Transport, stack: ExitStack) -> Transport:
+    def _open_again(self, transport: Transport) -> Transport:
         """Return a new transport: the old one may be a connection whose other end has gone without a word."""
         self._was_connected = False
         try:
-            opened = stack.enter_context(self._open())
+            opened = self._open()
         except UserError as error:  # its name is unknown for now
             self._log.warning("cannot be opened now", error=str(error))
             return transport
