@@ -3,14 +3,13 @@
 import signal
 import time
 
-import structlog
-
 from link.errors import UserError
 from link.messages import Fix, FixVelocity, PadGeometry, VehicleImu
 from link.payloads import cdr, json_messages
 from link.payloads.cdr import encoding_of
 from link.payloads.checks import PayloadError
 from link.program.service import Service
+from link.recording.log import Log
 from link.transports.tcp_transport import TcpClientTransport
 from link.transports.transport import Transport
 from link.zenoh.keys import Keys
@@ -33,6 +32,7 @@ class ReceiverLoop:
         zenoh: an open session.
         pad: that the vehicle tells.
         service: the service manager.
+        log: whose lines cost the loop nothing.
 
     Raises:
         UserError: the device cannot be opened.
@@ -48,6 +48,7 @@ class ReceiverLoop:
         zenoh: ZenohSession,
         pad: PadGeometry,
         service: Service,
+        log: Log,
     ) -> None:
         self._receiver = receiver
         self._open = open_transport
@@ -59,7 +60,7 @@ class ReceiverLoop:
         self._was_connected = False
         self._unsendable = self._fixes = 0
         self._began: tuple[int, float] | None = None  # a recording: its first stamp, and when that was told
-        self._log = structlog.get_logger("ground-vehicle")
+        self._log = log
         payload = json_messages.encode(pad)
         zenoh.serve(keys.pad, lambda _: payload)
         zenoh.declare_alive(keys.alive)

@@ -12,6 +12,7 @@ import pytest
 
 from link.messages import PadGeometry
 from link.program.service import Service
+from link.recording.log import Log
 from link.transports.tcp_transport import TcpClientTransport
 from link.transports.transport import Transport
 from link.zenoh.keys import Keys
@@ -98,6 +99,7 @@ def test_connection_that_was_opened_again_is_held_no_longer(monkeypatch: pytest.
         zenoh=cast(ZenohSession, NoZenoh()),
         pad=PAD,
         service=Service(),
+        log=Log("ground-vehicle"),
     )
     with signals_restored():
         loop.run()
