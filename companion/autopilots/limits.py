@@ -2,15 +2,18 @@
 
 A limit that was never told is flown without, as if there were none, so what is known by none of its names is asked for
 again, for as long as that takes. Some firmware has no parameter of one name or another: then the question costs little.
+A parameter may have been changed while nobody was heard, so that all are asked for again after a restart or a silence.
 """
 
 import math
 from collections.abc import Mapping, Sequence
-from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
+from itertools import chain
 
 from companion.autopilots.driver import Driver
 from companion.core.data import GRAVITY_M_S2
+from link.mavlink.dialect import Message
+from link.mavlink.parameters import parameter_value
 
 _STATED_MIN = 0.1  # m/s or degrees; a limit below this cannot be flown with
 GAIN_FACTOR_MAX = 4.0  # about a default; the ranges that the firmwares state are narrower
@@ -76,26 +79,40 @@ def parameter_names(driver: Driver) -> tuple[tuple[str, ...], ...]:
 
 
 class LimitQuestions:
-    """The questions that had no answer."""
+    """The parameters that are to be asked for: all of them at first."""
 
     def __init__(self) -> None:
         self._due_ns: dict[str, int] = {}
+        self._told: set[str] = set()
+        self._asks_all = True
+
+    def ask_all(self) -> None:
+        """Ask for every parameter once more."""
+        self._told.clear()
+        self._asks_all = True
+
+    def hear(self, message: Message, driver: Driver, known: Mapping[str, float]) -> Mapping[str, float]:
+        """Return what is known after a PARAM_VALUE; the same object where that changes nothing.
+
+        Somebody else may have asked for it, or changed it: autopilots tell everybody.
+        """
+        name, value = message.param_id, parameter_value(message, driver.autopilot_id)
+        if value is None or not any(name in names for names in parameter_names(driver)):
+            return known
+        self._told.add(name)
+        return known if known.get(name) == value else {**known, name: float(value)}
 
     def unanswered(self, name: str, local_ns: int) -> None:
         """Take note that the autopilot has not answered for `name`."""
         self._due_ns[name] = local_ns + _ASK_AGAIN_NS
 
-    def due(self, driver: Driver, known: AbstractSet[str], local_ns: int) -> list[str]:
-        """Return the names to be asked for now, each once.
-
-        Args:
-            driver: of the autopilot.
-            known: names of the parameters that it has told.
-            local_ns: local time now.
-        """
+    def due(self, driver: Driver, local_ns: int) -> list[str]:
+        """Return the names to be asked for now, each once."""
+        if self._asks_all:
+            self._due_ns = dict.fromkeys(chain(*parameter_names(driver)), local_ns)
+            self._asks_all = False
         due = [name for name, due_ns in self._due_ns.items() if local_ns >= due_ns]
         for name in due:
             del self._due_ns[name]
-        return [
-            name for name in due if any(name in names and known.isdisjoint(names) for names in parameter_names(driver))
-        ]
+        open_names = [names for names in parameter_names(driver) if self._told.isdisjoint(names)]
+        return [name for name in due if any(name in names for names in open_names)]

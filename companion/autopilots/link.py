@@ -1,13 +1,12 @@
 """The companion's dialogue with the autopilot: requests streams, origin and parameters, and reads messages."""
 
 from collections.abc import Mapping
-from itertools import chain
 
 from companion.autopilots.choice import driver_for
 from companion.autopilots.driver import AutopilotCommand, AutopilotView, Driver, streams_hz
 from companion.autopilots.heartbeat import with_acknowledgement
 from companion.autopilots.late_reports import LateReports
-from companion.autopilots.limits import LimitQuestions, parameter_names
+from companion.autopilots.limits import LimitQuestions
 from companion.autopilots.pilot_switch import PilotSwitch
 from companion.autopilots.response import Cascade, Shaping
 from companion.autopilots.state import AutopilotState, has_frame_moved, shift_reports, update_state
@@ -26,7 +25,6 @@ from link.mavlink.events import (
     MessageReceived,
     ParameterMissing,
 )
-from link.mavlink.parameters import parameter_value
 from link.mavlink.peer import LOST_AFTER_NS
 from link.mavlink.session import MavlinkSession
 from link.records import replace
@@ -88,7 +86,7 @@ class AutopilotLink:
         self._polled_ns = local_ns
         self._ask_for_origin(local_ns)
         if self.driver is not None:
-            for name in self._questions.due(self.driver, self.state.parameters.keys(), local_ns):
+            for name in self._questions.due(self.driver, local_ns):
                 self.session.read_parameter(name, local_ns)
 
     def take_acknowledgements(self) -> tuple[tuple[int, int], ...]:
@@ -155,7 +153,7 @@ class AutopilotLink:
                     self.driver = driver_for(event.autopilot, event.vehicle_type, self._config.kind)
                     self._ask_for_streams(self.driver, local_ns)
                 case LinkLost() | LinkRegained():
-                    self._set_link(up=isinstance(event, LinkRegained))
+                    self._follow_link(is_regained=isinstance(event, LinkRegained))
                 case AutopilotRestarted():
                     self._start_over()
                 case CommandAcknowledged():
@@ -172,7 +170,8 @@ class AutopilotLink:
         if self._late.is_late(message, local_ns):
             return
         if message.get_type() == "PARAM_VALUE":
-            self._hear_parameter(message, driver)
+            parameters = self._questions.hear(message, driver, self.state.parameters)
+            self.state = replace(self.state, parameters=parameters)
         elif message.get_type() == "RC_CHANNELS":
             self.pilot_switch.hear(message, local_ns)
         before = self.state
@@ -180,26 +179,27 @@ class AutopilotLink:
         if has_frame_moved(before, self.state):
             self._origin_asked_ns = None  # it has probably moved, too
 
-    def _hear_parameter(self, message: Message, driver: Driver) -> None:
-        """Take a limit that was asked for or that somebody else has changed: autopilots tell everybody."""
-        value = parameter_value(message, driver.autopilot_id)
-        if value is not None and any(message.param_id in names for names in parameter_names(driver)):
-            self.state = replace(self.state, parameters={**self.state.parameters, message.param_id: float(value)})
-
     def _start_over(self) -> None:
-        """Forget what the autopilot told before its restart, except for its parameters."""
-        view = AutopilotView(link_up=True, armed=False, in_control=False, failsafe=False, restarted=True)
-        old = self.state.view
-        moves = replace(old.frame_moves, origin_count=old.frame_moves.origin_count + 1)
-        view = replace(view, frame_moves=moves)
+        """Forget what the autopilot told before its restart; its parameters count until it tells them anew."""
+        moves = self.state.view.frame_moves
+        moves = replace(moves, origin_count=moves.origin_count + 1)
+        view = AutopilotView(
+            link_up=True, armed=False, in_control=False, failsafe=False, restarted=True, frame_moves=moves
+        )
         parameters, geoid_m = self.state.parameters, self._config.geoid_height_m
         self.state = AutopilotState(view=view, parameters=parameters, geoid_height_m=geoid_m)
         self._origin_asked_ns = None
+        self._questions.ask_all()
         self.pilot_switch.forget()
 
     def _take_answer(self, command: int, ticket: int | None) -> None:
         if self._unanswered.get(command) == ticket:
             self._unanswered.pop(command, None)
+
+    def _follow_link(self, *, is_regained: bool) -> None:
+        self._set_link(up=is_regained)
+        if is_regained:
+            self._questions.ask_all()
 
     def _set_link(self, *, up: bool) -> None:
         self.state = replace(self.state, view=replace(self.state.view, link_up=up))
@@ -227,8 +227,6 @@ class AutopilotLink:
         wanted_hz = streams_hz(driver, self._motion_rate_hz, stops_unused=self._config.stops_unused_streams)
         for message_id, rate_hz in (wanted_hz | self.pilot_switch.streams_hz).items():
             self.session.request_interval(message_id, rate_hz, local_ns)
-        for name in chain(*parameter_names(driver)):
-            self.session.read_parameter(name, local_ns)
 
     def _follow_clock(self, local_ns: int) -> None:
         """Put off the times of what has been reported, once UTC was set: what comes next has the new time."""

@@ -13,6 +13,7 @@ from link.mavlink.parameters import parameter_set_message
 from link.mavlink.pinned_peer import PinnedPeer
 from link.mavlink.session import MavlinkSession
 from link.mavlink.signing import Signing
+from link.program.clock import SystemClock
 from link.transports.transport import Transport
 from link.zenoh.keys import Keys
 from link.zenoh.pad_question import PadQuestion
@@ -63,6 +64,7 @@ class CheckSession:
         self._transport = transport
         self._peer = PinnedPeer(transport, reader.session)
         self._device = device
+        self._clock = SystemClock()  # a session's time never runs back, and the date may be set meanwhile
 
     def find(self, timeout_s: float) -> None:
         """Wait for the autopilot.
@@ -83,7 +85,7 @@ class CheckSession:
 
         A vehicle that is heard and has not answered for its pad is listened to for some seconds more.
         """
-        self.reader.count_anew(time.time_ns())
+        self.reader.count_anew(self._clock.now_ns())
         vehicle, detector = VehicleReader(keys.fix, config), DetectorReader()
         detector_alive = zenoh.watch_alive(keys.detector_alive)
         inboxes = Inboxes(
@@ -124,7 +126,7 @@ class CheckSession:
     def turn(self) -> None:
         """Take what has come and send what is due."""
         received = self._transport.receive_by_peer(_WAIT_S)
-        t_ns = time.time_ns()
+        t_ns = self._clock.now_ns()
         for data in self._peer.heard(received):
             self.reader.receive(data, t_ns, is_datagram=self._transport.is_datagram)
         self.reader.poll(t_ns)
@@ -132,14 +134,14 @@ class CheckSession:
             self._transport.send(frame)
 
     def _read(self, name: str) -> float | None:
-        self.reader.read_again(name, time.time_ns())
+        self.reader.read_again(name, self._clock.now_ns())
         end_s = time.monotonic() + _PARAMETERS_MAX_S
         while not self.reader.parameters_done and time.monotonic() < end_s:
             self.turn()
         return self.reader.value(name)
 
     def _hear(self, vehicle: VehicleReader, detector: DetectorReader, inboxes: Inboxes) -> None:
-        now_ns, clock = time.time_ns(), self.reader.session.clock
+        now_ns, clock = self._clock.now_ns(), self.reader.session.clock
         utc_ns = clock.local_to_utc_ns(now_ns) if clock.is_utc_known else None
         for sample in inboxes.fix.take():
             vehicle.fix(sample.payload, now_ns, utc_ns)

@@ -32,7 +32,8 @@ class ChaseConfig(StrictModel):
     # one roof in 25 is 3.5 m or more higher than it is said to be, and the drone would fly into it.
     unseen_height_stds: NotNegative = 2.0
     unseen_height_max_m: Positive = 8.0  # in all; less than the range of the detector that is to see it (12 m here)
-    start_acceleration_m_s2: Positive = 3.5  # that suffices for a chase that begins in time
+    # Of the acceleration limit, and of the jerk's, that suffices for a chase that begins in time.
+    start_fraction: Annotated[float, Field(gt=0.0, le=1.0)] = 0.7
     # So long a chase looks for a pad that has to be seen, over its said place, before it says what is missing. In this
     # time the offset does not change, and dropouts of a detector last a second.
     unseen_hold_s: Positive = 10.0

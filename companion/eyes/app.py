@@ -76,6 +76,7 @@ def run_detector(
     from companion.eyes.sight import SightSystem
     from companion.eyes.sources.opening import SourceOptions, open_source
     from companion.eyes.sources.zenoh_source import PICTURE_MAX_BYTES
+    from link.recording.log import Log
     from link.records import replace
     from link.zenoh.session import open_session
 
@@ -89,10 +90,12 @@ def run_detector(
     with open_session(replace(endpoints.options(), message_max_bytes=PICTURE_MAX_BYTES)) as zenoh:
         frames = open_source(source, options, keys, zenoh)
         recorder = None if record is None else open_recorder(record, keys)
+        log = Log("pad-detector")
         try:
-            EyesLoop(EyesNode(system, keys), frames, keys, zenoh, recorder).run()
+            EyesLoop(EyesNode(system, keys), frames, keys, zenoh=zenoh, log=log, recorder=recorder).run()
         finally:
             frames.close()
+            log.close()
             if recorder is not None:
                 recorder.close()
 

@@ -4,7 +4,6 @@ import signal
 import time
 from enum import Enum
 
-import structlog
 from msgspec import Struct
 
 from companion.eyes.node import EyesNode
@@ -16,6 +15,7 @@ from link.messages import CompressedPicture
 from link.payloads import cdr
 from link.program.clock import spare_present_objects
 from link.program.service import Service
+from link.recording.log import Log
 from link.recording.recorder import Recorder
 from link.zenoh.keys import Keys
 from link.zenoh.pad_question import PadQuestion
@@ -67,11 +67,19 @@ class EyesLoop:
         source: of frames.
         keys: of the Zenoh contract.
         zenoh: an open session.
+        log: whose lines cost the loop nothing.
         recorder: takes a frame now and then, None where nothing is recorded.
     """
 
     def __init__(
-        self, node: EyesNode, source: Source, keys: Keys, zenoh: ZenohSession, recorder: Recorder | None = None
+        self,
+        node: EyesNode,
+        source: Source,
+        keys: Keys,
+        *,
+        zenoh: ZenohSession,
+        log: Log,
+        recorder: Recorder | None = None,
     ) -> None:
         self._node = node
         self._source = source
@@ -88,7 +96,7 @@ class EyesLoop:
         self._recorded_ns = 0
         self._stopping = False
         self._service = Service()
-        self._log = structlog.get_logger("pad-detector")
+        self._log = log
 
     def run(self) -> None:
         """Run until a signal comes.

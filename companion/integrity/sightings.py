@@ -182,16 +182,15 @@ def do_sightings_disagree(s: Situation, _: CompanionConfig) -> bool:
 def is_seen_elsewhere(s: Situation, c: CompanionConfig) -> bool:
     """Return whether the pad is seen where neither the receivers nor what they promise allow it to be.
 
-    A drone whose own place has stepped, but for what its origin has moved by, may have left the frame that its receiver
-    had, or come back to it.
+    A drone whose own place has stepped since its origin was set or moved may have left the frame that its receiver had,
+    or come back to it.
     """
     pad = s.pad
     off_m = None if pad is None else pad.frame_offset.distance_m
     if pad is None or off_m is None or not pad.has_one_frame:
         return False
-    (east_m, north_m, _), moves = s.autopilot.frame_moves.shift_enu_m, s.autopilot.frame_moves
-    stepped_m = math.hypot(east_m - moves.origin_shift_enu_m[0], north_m - moves.origin_shift_enu_m[1])
-    return off_m > _offset_max_m(pad, s.vehicle.fix_std_m, c) + stepped_m
+    east_m, north_m, _ = s.autopilot.frame_moves.since_origin_enu_m
+    return off_m > _offset_max_m(pad, s.vehicle.fix_std_m, c) + math.hypot(east_m, north_m)
 
 
 def _offset_max_m(pad: PadPath, fix_std_m: float | None, c: CompanionConfig) -> float:

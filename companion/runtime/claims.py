@@ -1,7 +1,9 @@
 """Who else flies this drone, or lands on this vehicle: one companion for a drone, and one drone on a vehicle at a time.
 
 Each companion shows by a liveliness token that it runs, and by another that it lands on its vehicle or stands there.
-The one that was there first counts; a token goes with its program, however that ends.
+The one that was there first counts; a token goes with its program, however that ends. Who flies a drone goes on,
+whoever comes then: two computers' clocks can be off by years, and tell who began earlier only where neither flies, or
+where both do when they first meet.
 """
 
 import time
@@ -30,7 +32,7 @@ class Claims:
     Args:
         zenoh: to show and see them by.
         keys: of the Zenoh contract.
-        begun_ns: when this companion began; who began earlier goes first.
+        begun_ns: when this companion began by its computer's clock.
     """
 
     def __init__(self, zenoh: Tokens, keys: Keys, begun_ns: int | None = None) -> None:
@@ -41,11 +43,13 @@ class Claims:
         self._landings = zenoh.watch_alive(keys.landing_claim("*", "*"))
         zenoh.declare_alive(keys.companion_alive(self._name))
         self._release: Callable[[], None] | None = None
+        self._met: frozenset[str] = frozenset()  # other companions that were there when this one claimed its vehicle
 
     def update(self, phase: Phase, *, armed: bool) -> None:
         """Claim the vehicle while this drone lands there or stands there, and no longer."""
         lands = phase in FLYING_PHASES or (phase is Phase.SECURED and not armed)
         if lands and self._release is None:
+            self._met = self._others()
             self._release = self._zenoh.declare_alive(self._keys.landing_claim(self._keys.drone, self._name))
         elif not lands and self._release is not None:
             self._release()
@@ -54,7 +58,7 @@ class Claims:
     @property
     def rival(self) -> Rival | None:
         """Who was there first, None where this companion was."""
-        if any(name < self._name for (name,) in _ends(self._companions.keys, 1)):
+        if self._is_drone_taken():
             return Rival(drone=self._keys.drone, is_this_drone=True)
         claims = sorted((name, drone) for drone, name in _ends(self._landings.keys, 2))
         for name, drone in claims:
@@ -62,6 +66,17 @@ class Claims:
             if drone != self._keys.drone and (self._release is None or is_first):
                 return Rival(drone=drone, is_this_drone=False)
         return None
+
+    def _is_drone_taken(self) -> bool:
+        flying = frozenset(name for drone, name in _ends(self._landings.keys, 2) if drone == self._keys.drone)
+        flying -= {self._name}
+        if self._release is None:
+            return bool(flying) or any(name < self._name for name in self._others())
+        return any(name < self._name for name in flying | (self._met & self._others()))
+
+    def _others(self) -> frozenset[str]:
+        """Return the other companions of this drone."""
+        return frozenset(name for (name,) in _ends(self._companions.keys, 1)) - {self._name}
 
 
 def _ends(keys: Iterable[str], chunks: int) -> list[list[str]]:

@@ -85,6 +85,7 @@ def _is_recent(kind: _Kind, now_ns: int) -> bool:
 
 
 _UNINVITED = "comes for a vehicle of which the configuration says that it tells nothing (silent_vehicle)"
+_UNPLACED = "of a time at which the drone's place or attitude is not known; is the detector's clock right?"
 _FUTURE_MAX_NS = 500_000_000  # a stamp farther ahead comes from a clock that is wrong
 _SAMPLES_MAX_PER_S = 400  # of a key: twice the fastest inertial unit's; each is fused again when a late one comes
 
@@ -131,9 +132,13 @@ class VehicleLink:
             self.refuse(key.rsplit("/", 1)[-1], "flood", f"come more than {_SAMPLES_MAX_PER_S} times in a second")
             return
         try:
-            self._received.append((key, measurements_of(key, payload, self._keys, state)))
+            measurements = measurements_of(key, payload, self._keys, state)
         except PayloadError as error:
             self.refuse(key.rsplit("/", 1)[-1], "unreadable", str(error))
+            return
+        if key == self._keys.pad_pose and not measurements and state.history:
+            self.refuse(key.rsplit("/", 1)[-1], "unplaced", _UNPLACED)
+        self._received.append((key, measurements))
 
     def receive_pad(self, pad: PadGeometry) -> bool:
         """Take the description of the pad; return whether it is one that can be."""

@@ -5,6 +5,7 @@ a thread of its own. So a stream's stamp may be a second old when the program is
 it is read: who goes on sending is past that before the program is back.
 """
 
+import os
 import time
 from pathlib import Path
 from typing import Annotated
@@ -17,7 +18,7 @@ from link.recording.recorder import BackgroundRecorder
 
 _PERIOD_NS = 1_000_000_000
 _PERIOD = _PERIOD_NS // 10_000  # in the signature's units
-_BYTES_MAX = 1 << 20  # 256 systems with 256 components would not take more
+_BYTES_MAX = 1 << 22  # 256 systems with 256 components would take 1.8 MB
 
 _Stamp = Annotated[int, msgspec.Meta(ge=0, lt=1 << 48)]
 _Id = Annotated[int, msgspec.Meta(ge=0, lt=256)]
@@ -103,9 +104,15 @@ class _File:
         self._path = path
 
     def write(self, record: _Kept) -> None:
-        """Replace the file as a whole: a computer that is switched off leaves the old one or the new one."""
+        """Replace the file as a whole: a computer that is switched off leaves the old one or the new one.
+
+        The new one is on the disk before it takes the other's name, or it could be empty after that.
+        """
         new = self._path.with_name(f"{self._path.name}.new")
-        new.write_bytes(msgspec.json.encode(record))
+        with new.open("wb") as file:
+            file.write(msgspec.json.encode(record))
+            file.flush()
+            os.fsync(file.fileno())
         new.replace(self._path)
 
     def close(self) -> None:

@@ -1,6 +1,7 @@
 """The clocks that loops run on: the system's, the simulator's own, and one that follows the simulator's ticks.
 
-All give UTC in nanoseconds and never go back. Numerics do not see clocks; they get `t_ns` as an argument.
+All give UTC in nanoseconds, and all but `DateClock` never go back. Numerics do not see clocks; they get `t_ns` as an
+argument.
 """
 
 import gc
@@ -97,6 +98,18 @@ class SystemClock(ScaledClock):
         self, *, utc_ns: Callable[[], int] = time.time_ns, monotonic_ns: MonotonicNs = time.monotonic_ns
     ) -> None:
         super().__init__(speed=1.0, epoch_ns=utc_ns(), monotonic_ns=monotonic_ns)
+
+
+class DateClock:
+    """The computer's UTC as it is now, for stamps that others compare with their own: it steps when the date is set."""
+
+    def now_ns(self) -> int:
+        """Return the present UTC time in nanoseconds."""
+        return time.time_ns()
+
+    def wall_s(self, duration_s: float) -> float:
+        """Return how many seconds of wall time `duration_s` of this clock take."""
+        return duration_s
 
 
 class SimulatedClock:

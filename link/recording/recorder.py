@@ -4,10 +4,12 @@ A slow or full disk costs records, which are counted, and never time of the loop
 """
 
 import struct
+import sys
 import threading
 import time
 from collections import deque
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Any, Protocol
 
 _CAPACITY = 20_000  # half a minute of everything that a companion records
@@ -82,6 +84,7 @@ class BackgroundRecorder:
         self._closing = threading.Event()
         self._dropped_full = 0
         self._dropped_failed = 0
+        self._unforeseen_told = False
         self._thread = threading.Thread(target=self._run, name="recorder", daemon=True)
         self._thread.start()
 
@@ -112,18 +115,28 @@ class BackgroundRecorder:
         while not is_last:
             is_last = self._closing.wait(_LOOK_S)
             self._write_waiting()
-        try:
-            self._sink.close()
-        except _UNWRITABLE as error:
-            self._dropped_failed += _count_lost(error)
+        self._let(self._sink.close)
 
     def _write_waiting(self) -> None:
         while self._waiting:
-            try:
-                self._sink.write(self._waiting.popleft())
-            except _UNWRITABLE as error:
-                self._dropped_failed += _count_lost(error)
+            self._let(self._sink.write, self._waiting.popleft())
             self._pause(_PAUSE_S)
+
+    def _let(self, act: Callable[..., None], *record: Any) -> None:
+        """Let the sink act, and count what it fails with: an error that ended this thread would lose all after it."""
+        try:
+            act(*record)
+        except _UNWRITABLE as error:
+            self._dropped_failed += _count_lost(error)
+        except Exception as error:  # noqa: BLE001 (of a library below the sink, which may raise anything)
+            self._dropped_failed += 1
+            self._tell_unforeseen(type(error).__name__)
+
+    def _tell_unforeseen(self, kind: str) -> None:
+        if not self._unforeseen_told and sys.stderr is not None:
+            self._unforeseen_told = True
+            with suppress(OSError, ValueError):  # nobody reads it, or it is closed
+                sys.stderr.write(f"a record cannot be written: unforeseen {kind}\n")
 
 
 class DirectRecorder:

@@ -110,8 +110,11 @@ def _open(device: SerialDevice) -> Any:
     # Imported here, since a flight over UDP needs no serial port. SerialException is an OSError.
     import serial  # noqa: PLC0415 (see above)
 
-    # Two programs on one port would get half of the stream each.
-    return serial.Serial(device.path, device.baud, timeout=0, exclusive=True)
+    try:
+        # Two programs on one port would get half of the stream each.
+        return serial.Serial(device.path, device.baud, timeout=0, exclusive=True)
+    except termios.error as error:  # of a port that goes while it is opened, which pyserial lets through
+        raise OSError(*error.args) from error
 
 
 def _problem(error: OSError | ValueError, device: SerialDevice) -> str:

@@ -1,5 +1,6 @@
 """TCP: `tcp` is a client that connects again whenever it has to, `tcpin` a server for several clients."""
 
+import errno
 import select
 import socket
 import time
@@ -92,7 +93,10 @@ class TcpClientTransport(Transport):
             self._next_attempt_s = time.monotonic() + _RECONNECT_S
             self._attempt = socket.socket(self._family, socket.SOCK_STREAM)
             self._attempt.setblocking(False)
-            self._attempt.connect_ex(self._address)
+            if self._attempt.connect_ex(self._address) not in {0, errno.EINPROGRESS}:  # no way there, for now
+                self._errors += 1
+                self._abandon()
+                return
         if select.select([], [self._attempt], [], timeout_s)[1]:
             self._finish(self._attempt)
 

@@ -93,7 +93,7 @@ class Transport(ABC):
         """Hears this peer only from now on, and sends to no other, until `seek_peer`.
 
         Args:
-            peer: as `receive_by_peer` numbers it; where there can only be one, this changes nothing.
+            peer: as the last `receive_by_peer` numbers it; where there can only be one, this changes nothing.
         """
         self._is_seeking, self._pinned = False, peer
 

@@ -26,10 +26,6 @@ class UdpPeers:
         """Their addresses."""
         return list(self._heard_s)
 
-    def address_of(self, number: int) -> Any:
-        """The address of a peer, None when it is forgotten."""
-        return next((address for address, one in self._numbers.items() if one == number), None)
-
     def heard(self, address: Any, now_s: float) -> int:
         """Takes note that a peer spoke; returns its number."""
         self._heard_s.pop(address, None)
@@ -63,6 +59,7 @@ class _UdpTransport(Transport):
         self._socket.setblocking(False)
         self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, _RECEIVE_BUFFER_BYTES)
         self._peers = UdpPeers()
+        self._senders: dict[int, Any] = {}  # of what came last, by number: a crowd of others pushes none of them out
         self._pinned_address: Any = None
 
     @property
@@ -79,6 +76,7 @@ class _UdpTransport(Transport):
         if self._socket.fileno() < 0 or not wait_readable(self._socket.fileno(), timeout_s):
             return []
         received: list[PeerBytes] = []
+        self._senders.clear()
         size, now_s = 0, time.monotonic()
         while size < DRAIN_BYTES_MAX:
             try:
@@ -90,7 +88,9 @@ class _UdpTransport(Transport):
                 continue
             size += len(data) or 1  # an empty datagram, too, is work
             if self._pinned_address in {None, address}:
-                received.append(PeerBytes(self._peers.heard(address, now_s), data))
+                peer = self._peers.heard(address, now_s)
+                self._senders[peer] = address
+                received.append(PeerBytes(peer, data))
             else:
                 self._strangers += 1
         self._peers.forget_silent(now_s)
@@ -104,7 +104,7 @@ class _UdpTransport(Transport):
     def pin(self, peer: int) -> None:
         """Hears this peer's address and port only from now on, and sends to no other, until `seek_peer`."""
         super().pin(peer)
-        self._pinned_address = self._peers.address_of(peer)
+        self._pinned_address = self._senders.get(peer)
 
     def fileno(self) -> int:
         """The descriptor to wait on for input, -1 while there is none."""

@@ -1,6 +1,7 @@
 """The `ground-vehicle` command."""
 
 from collections.abc import Sequence
+from contextlib import closing
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, NamedTuple
@@ -184,11 +185,19 @@ def _source(gpsd: str | None, nmea: str | None, mavlink: str | None) -> _Source:
 def _listen(source: _Source, pad: "PadGeometry", keys: "Keys", open_zenoh: "OpenZenoh") -> None:
     """Publish a real vehicle."""
     from link.program.service import Service
+    from link.recording.log import Log
     from scenarios.vehicle_sources.loop import ReceiverLoop
 
-    with open_zenoh() as zenoh:
+    with open_zenoh() as zenoh, closing(Log("ground-vehicle")) as log:
         ReceiverLoop(
-            source.receiver, source.open_transport, source.name, keys=keys, zenoh=zenoh, pad=pad, service=Service()
+            source.receiver,
+            source.open_transport,
+            source.name,
+            keys=keys,
+            zenoh=zenoh,
+            pad=pad,
+            service=Service(),
+            log=log,
         ).run()
 
 

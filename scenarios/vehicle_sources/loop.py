@@ -2,9 +2,6 @@
 
 import signal
 import time
-from contextlib import ExitStack
-
-import structlog
 
 from link.errors import UserError
 from link.messages import Fix, FixVelocity, PadGeometry, VehicleImu
@@ -12,6 +9,7 @@ from link.payloads import cdr, json_messages
 from link.payloads.cdr import encoding_of
 from link.payloads.checks import PayloadError
 from link.program.service import Service
+from link.recording.log import Log
 from link.transports.tcp_transport import TcpClientTransport
 from link.transports.transport import Transport
 from link.zenoh.keys import Keys
@@ -34,6 +32,7 @@ class ReceiverLoop:
         zenoh: an open session.
         pad: that the vehicle tells.
         service: the service manager.
+        log: whose lines cost the loop nothing.
 
     Raises:
         UserError: the device cannot be opened.
@@ -49,6 +48,7 @@ class ReceiverLoop:
         zenoh: ZenohSession,
         pad: PadGeometry,
         service: Service,
+        log: Log,
     ) -> None:
         self._receiver = receiver
         self._open = open_transport
@@ -60,7 +60,7 @@ class ReceiverLoop:
         self._was_connected = False
         self._unsendable = self._fixes = 0
         self._began: tuple[int, float] | None = None  # a recording: its first stamp, and when that was told
-        self._log = structlog.get_logger("ground-vehicle")
+        self._log = log
         payload = json_messages.encode(pad)
         zenoh.serve(keys.pad, lambda _: payload)
         zenoh.declare_alive(keys.alive)
@@ -73,8 +73,8 @@ class ReceiverLoop:
         """
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, self._stop)
-        with ExitStack() as stack:
-            transport = stack.enter_context(self._open())
+        transport = self._open()
+        try:
             health = Health(self._device, time.monotonic_ns())
             self._log.info("ready", device=self._device)
             while not self._stopping:
@@ -83,7 +83,9 @@ class ReceiverLoop:
                     self._stopping = self._stopping or transport.is_at_end
                 elif isinstance(transport, TcpClientTransport) and health.is_silent(time.monotonic_ns()):
                     health.closed(time.monotonic_ns())
-                    transport = self._open_again(transport, stack)
+                    transport = self._open_again(transport)
+        finally:
+            transport.close()
         self._service.stopping()
         self._service.close()
         self._log.info("stopped", fixes=self._fixes, unsendable=self._unsendable, **self._receiver.counts)
@@ -93,11 +95,11 @@ class ReceiverLoop:
     def _stop(self, *_: object) -> None:
         self._stopping = True
 
-    def _open_again(self, transport: Transport, stack: ExitStack) -> Transport:
+    def _open_again(self, transport: Transport) -> Transport:
         """Return a new transport: the old one may be a connection whose other end has gone without a word."""
         self._was_connected = False
         try:
-            opened = stack.enter_context(self._open())
+            opened = self._open()
         except UserError as error:  # its name is unknown for now
             self._log.warning("cannot be opened now", error=str(error))
             return transport

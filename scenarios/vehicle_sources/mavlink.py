@@ -48,7 +48,7 @@ class MavlinkReceiver:
         self._session = MavlinkSession(_OWN_SYSTEM_ID) if session is None else session
         self._without_place = 0
         self._reason: str | None = "no autopilot's heartbeat was received: check device, port and baud rate"
-        self._told_ns = 0
+        self._told_ns = 0  # as it was stamped: UTC of the same stamp changes with what is known of the clocks
         self._has_double_antenna = False
 
     @property
@@ -104,12 +104,13 @@ class MavlinkReceiver:
             return self._miss("the autopilot's receiver has no fix: give it a view of the sky")
         if not message.alt_ellipsoid:
             return self._miss("the autopilot's receiver says no height above the ellipsoid (alt_ellipsoid)")
-        t_ns = self._utc_ns(message.time_usec * 1000)
+        stamp_ns = message.time_usec * 1000
+        t_ns = self._utc_ns(stamp_ns)
         if t_ns is None:
             return self._miss("the autopilot does not say the UTC time (SYSTEM_TIME)")
-        if is_repeated(t_ns, self._told_ns):
+        if is_repeated(stamp_ns, self._told_ns):
             return []
-        self._told_ns, self._reason = t_ns, None
+        self._told_ns, self._reason = stamp_ns, None
         found = (fix_of(message, t_ns), velocity_of(message, t_ns), heading_of(message, t_ns))
         self._has_double_antenna = found[2] is not None
         return [reading for reading in found if reading is not None]

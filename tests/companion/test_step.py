@@ -156,11 +156,6 @@ def test_motors_that_the_autopilot_itself_switches_off_on_the_pad_end_the_landin
     assert flight.phase is Phase.SECURED
 
 
-def _with_unknown_heading(x_m: float, speed_m_s: float) -> Flight:
-    vehicle = KnownVehicle((x_m, 0.4, PAD_HEIGHT_M), (speed_m_s, 0.0, 0.0), yaw_rad=None)
-    return Flight(vehicle=vehicle, pad=LEVER, config=IMPATIENT)
-
-
 @pytest.mark.slow
 def test_unknown_heading_with_a_lever_arm_keeps_the_drone_above_the_height_of_alignment() -> None:
     flight = Flight(

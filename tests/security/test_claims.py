@@ -73,13 +73,32 @@ def test_of_two_drones_that_start_at_the_same_time_one_goes_on(
     assert first.rival is None
 
 
-def test_claim_of_a_second_companion_does_not_keep_the_first_from_its_own_drone(
+@pytest.mark.parametrize("begun_ns", [100, 300])
+def test_companion_that_flies_goes_on_whatever_the_clock_of_one_that_comes_then(
+    sessions: tuple[ZenohSession, ZenohSession], begun_ns: int
+) -> None:
+    flies = Claims(sessions[0], KEYS, 200)
+    flies.update(Phase.CHASE, armed=True)
+    comes = Claims(sessions[1], KEYS, begun_ns)
+    companions = sessions[0].watch_alive(KEYS.companion_alive("*"))
+    soon(sessions[1], lambda: comes.rival == ITSELF, "the one that flies is seen")
+    soon(sessions[0], lambda: len(companions.keys) == 2, "the one that comes is seen")
+    assert flies.rival is None
+    flies.update(Phase.IDLE, armed=False)
+    kept_out = flies if begun_ns < 200 else comes
+    soon(sessions[1], lambda: (comes.rival == ITSELF) is (comes is kept_out), "neither flies: who began earlier counts")
+    assert (flies.rival == ITSELF) is (flies is kept_out)
+
+
+def test_of_two_companions_that_both_fly_a_drone_when_they_meet_one_goes_on(
     sessions: tuple[ZenohSession, ZenohSession],
 ) -> None:
     first, second = Claims(sessions[0], KEYS, 100), Claims(sessions[1], KEYS, 200)
-    second.update(Phase.CHASE, armed=True)
+    for one in (first, second):
+        one.update(Phase.CHASE, armed=True)
     claims = sessions[0].watch_alive(KEYS.landing_claim("*", "*"))
-    soon(sessions[0], lambda: claims.alive, "the claim is seen")
+    soon(sessions[1], lambda: second.rival == ITSELF, "the first is seen")
+    soon(sessions[0], lambda: len(claims.keys) == 2, "the second is seen")
     assert first.rival is None
 
 

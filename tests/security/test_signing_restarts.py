@@ -1,5 +1,6 @@
 """Signed frames that are recorded and sent again after the companion was started anew."""
 
+import os
 from pathlib import Path
 
 import pytest
@@ -70,6 +71,30 @@ def test_killed_companion_has_kept_what_it_took_up_to_a_second_ago(tmp_path: Pat
     assert taken(signing, late) == 1
     again = restored(path, KEY, NOW_NS + 3 * S)
     assert taken(again, early + late) == 0
+
+
+def test_stamps_of_all_systems_and_components_there_can_be_are_read_again(tmp_path: Path) -> None:
+    stamp = signing_timestamp(NOW_NS)
+    streams = {(system, component, 255): stamp for system in range(256) for component in range(256)}
+    signing = Signing(KEY, timestamp=stamp, streams=streams)
+    assert restarted(tmp_path / "stamps", signing, NOW_NS).streams.keys() == streams.keys()
+
+
+def test_stamps_are_on_the_disk_in_whole_before_they_replace_the_older_ones(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path, on_disk = tmp_path / "stamps", []
+
+    def note(descriptor: int) -> None:
+        state = os.fstat(descriptor)
+        on_disk.append((state.st_ino, state.st_size))
+        assert not path.exists()
+
+    monkeypatch.setattr(os, "fsync", note)
+    memory = SigningMemory(path, restored(path, KEY, NOW_NS))
+    assert on_disk == [(path.stat().st_ino, path.stat().st_size)]
+    monkeypatch.undo()
+    memory.close()
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable
+from contextlib import ExitStack
 
 import pytest
 
@@ -90,6 +91,23 @@ def test_only_the_address_and_port_where_the_autopilot_was_found_is_listened_to_
         assert listener.statistics.strangers == 1
         assert autopilot.receive(0.5) != b""
         assert stranger.receive(0.01) == b""
+
+
+def test_crowd_of_strangers_that_speaks_with_the_autopilot_keeps_nobody_from_being_pinned(
+    listener: UdpInTransport,
+) -> None:
+    device, own = f"udpout:127.0.0.1:{listener.port}", MavlinkCodec(1, 1)
+    with listener, open_transport(device) as autopilot, ExitStack() as stack:
+        crowd = [stack.enter_context(open_transport(device)) for _ in range(40)]
+        companion = Companion(listener)
+        autopilot.send(own.encode(beat(1)))
+        for stranger in crowd:
+            stranger.send(b"here")
+        companion.hear(1 + len(crowd))
+        companion.t_ns += S
+        companion.turn()
+        assert autopilot.receive(0.5) != b""
+        assert [stranger.receive(0.0) for stranger in crowd] == [b""] * len(crowd)
 
 
 def test_autopilot_that_comes_back_by_another_port_after_a_silence_is_found_there(listener: UdpInTransport) -> None:

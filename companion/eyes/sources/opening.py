@@ -9,7 +9,7 @@ from companion.eyes.sources.frames import Source
 from companion.eyes.sources.picamera_source import PiCameraSource, open_picamera
 from companion.eyes.sources.zenoh_source import ZenohSource
 from link.errors import UserError
-from link.program.clock import SystemClock
+from link.program.clock import DateClock
 from link.zenoh.keys import Keys
 from link.zenoh.session import ZenohSession
 
@@ -34,7 +34,7 @@ def open_source(address: str, options: SourceOptions, keys: Keys, zenoh: ZenohSe
     """
     if address == _ZENOH:
         return ZenohSource(zenoh, keys)
-    clock = SystemClock()
+    clock = DateClock()  # a computer without a clock chip gets the date long after its start
     if address == _PICAMERA:
         size_px = options.size_px
         if size_px is None:

@@ -107,7 +107,7 @@ def _lead_m(speed_m_s: float, s: Situation, config: CompanionConfig) -> float:
     has nothing left to catch up with.
     """
     limits = config.limits.flight_limits() if s.limits is None else s.limits
-    share = config.chase.start_acceleration_m_s2 / config.limits.acceleration_max_m_s2
+    share = config.chase.start_fraction
     left_m_s2 = limits.tilt_acceleration_m_s2 - DRAG_PER_S * speed_m_s
     acceleration_m_s2 = share * max(min(limits.acceleration_max_m_s2, left_m_s2), _LEFT_MIN_M_S2)
     return 0.5 * speed_m_s * (speed_m_s / acceleration_m_s2 + acceleration_m_s2 / (share * limits.jerk_max_m_s3))

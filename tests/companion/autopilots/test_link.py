@@ -118,6 +118,32 @@ def test_restarted_autopilot_is_taken_for_disarmed_and_its_old_places_are_forgot
     assert talk.link.state.own is not None
 
 
+SPEED_MAX = "MPC_XY_VEL_MAX"
+
+
+@pytest.mark.parametrize("restarts", [False, True], ids=["silence", "restart"])
+def test_parameter_that_was_changed_while_nobody_was_heard_is_read_again(restarts: bool) -> None:
+    talk = Talk(FakePx4(parameters={SPEED_MAX: (12.0, mavlink.MAV_PARAM_TYPE_REAL32)}))
+    assert talk.link.state.parameters[SPEED_MAX] == 12.0
+    talk.autopilot.mute = True
+    talk.run(3.5)
+    if restarts:
+        talk.autopilot.restart(talk.t_ns)
+    talk.autopilot.parameters[SPEED_MAX] = (4.0, mavlink.MAV_PARAM_TYPE_REAL32)
+    talk.autopilot.mute = False
+    talk.run(1.5)
+    assert talk.link.state.parameters[SPEED_MAX] == 4.0
+
+
+def test_parameter_that_a_quick_restart_has_changed_is_read_again() -> None:
+    talk = Talk(FakePx4(parameters={SPEED_MAX: (12.0, mavlink.MAV_PARAM_TYPE_REAL32)}))
+    talk.autopilot.restart(talk.t_ns)
+    talk.autopilot.parameters[SPEED_MAX] = (4.0, mavlink.MAV_PARAM_TYPE_REAL32)
+    talk.run(4.0)
+    assert talk.link.state.view.restarted
+    assert talk.link.state.parameters[SPEED_MAX] == 4.0
+
+
 def test_origin_that_somebody_tells_once_is_asked_for_and_not_believed() -> None:
     talk = Talk(FakePx4())
     talk.run(1.0)

@@ -143,6 +143,15 @@ def test_moved_origin_is_counted_and_a_repeated_one_is_not() -> None:
     assert _hear(*2 * [_origin(475_000_000, 80_000_000, 401_000)], state=state).view.frame_moves.origin_count == 2
 
 
+def test_steps_before_an_origin_that_they_do_not_explain_are_none_since_then() -> None:
+    told = (LEVEL, _at(0, (0.0, 0.0, 0.0)), _at(20, (-2.3, 0.0, -0.9)))
+    state = _hear(_origin(475_000_000, 80_000_000, 400_000), *told)
+    assert state.view.frame_moves.since_origin_enu_m == pytest.approx((0.0, -2.3, 0.9))
+    other = _origin(475_000_400, 80_000_000, 400_000)
+    moved = _hear(other, _at(40, (-2.3, 0.0, -0.9)), other, state=state)
+    assert moved.view.frame_moves.since_origin_enu_m == (0.0, 0.0, 0.0)
+
+
 @pytest.mark.parametrize("steps_first", [True, False])
 def test_origin_that_moves_by_what_the_drone_stepped_leaves_the_ground_known(*, steps_first: bool) -> None:
     known, other = _origin(475_000_000, 80_000_000, 400_000), _origin(475_000_200, 80_000_000, 399_000)

@@ -46,9 +46,6 @@ class World(Transport):
     def monotonic(self) -> float:
         return self.now_s
 
-    def time_ns(self) -> int:
-        return 10**18 + round(self.now_s * 1e9)
-
     def receive(self, wait_s: float) -> bytes:
         self.now_s += wait_s
         return b""
@@ -106,7 +103,7 @@ class SignedAutopilot(Transport):
 
 def listened(monkeypatch: pytest.MonkeyPatch, world: World, duration_s: float) -> tuple[VehicleFacts, float]:
     """Return what a session tells of the vehicle of an autopilot that has told all, and how long it took."""
-    monkeypatch.setattr(session_module, "time", SimpleNamespace(monotonic=world.monotonic, time_ns=world.time_ns))
+    monkeypatch.setattr(session_module, "time", SimpleNamespace(monotonic=world.monotonic))
     monkeypatch.setattr(Reader, "parameters_done", True)
     began_s = world.now_s
     monkeypatch.setattr(Reader, "listened_s", property(lambda _: world.now_s - began_s))
@@ -114,6 +111,28 @@ def listened(monkeypatch: pytest.MonkeyPatch, world: World, duration_s: float) -
     session = CheckSession(Reader(MavlinkSession(1, target_system_id=1)), anything, "test")
     vehicle, _ = session.listen(duration_s, anything, KEYS, IntegrityConfig())
     return vehicle, world.now_s - began_s
+
+
+class TimedReader(Reader):
+    """Notes the local times that it is given."""
+
+    def __init__(self) -> None:
+        super().__init__(MavlinkSession(1, target_system_id=1))
+        self.times_ns: list[int] = []
+
+    def poll(self, t_ns: int) -> None:
+        self.times_ns.append(t_ns)
+        super().poll(t_ns)
+
+
+def test_time_of_a_session_goes_on_while_the_date_is_set_back(monkeypatch: pytest.MonkeyPatch) -> None:
+    reader, dates_ns = TimedReader(), iter(range(10**18, 0, -(10**15)))
+    session = CheckSession(reader, World(heard_from=None), "test")
+    monkeypatch.setattr(time, "time_ns", lambda: next(dates_ns))
+    for _ in range(5):
+        session.turn()
+    assert len(reader.times_ns) == 5
+    assert reader.times_ns == sorted(reader.times_ns)
 
 
 def test_pad_is_asked_for_until_the_vehicle_has_heard_the_question(monkeypatch: pytest.MonkeyPatch) -> None:

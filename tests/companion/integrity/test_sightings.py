@@ -69,13 +69,13 @@ def test_between_two_frames_any_offset_may_be_true() -> None:
     assert not is_seen_elsewhere(seen(5.0, has_one_frame=False), AUTO)
 
 
-@pytest.mark.parametrize(("origin_m", "is_elsewhere"), [(0.0, False), (2.0, True)])
-def test_step_of_its_own_place_explains_as_much_unless_its_origin_has_moved(
-    origin_m: float, is_elsewhere: bool
+@pytest.mark.parametrize(("since_origin_m", "is_elsewhere"), [(2.0, False), (0.0, True)])
+def test_step_of_its_own_place_explains_as_much_until_its_origin_moves(
+    since_origin_m: float, is_elsewhere: bool
 ) -> None:
     facts = seen(HALF_M + 1.9)
     assert is_seen_elsewhere(facts, AUTO)
-    moved = FrameMoves(shift_enu_m=(2.0, 0.0, 3.0), origin_shift_enu_m=(origin_m, 0.0, 3.0))
+    moved = FrameMoves(shift_enu_m=(2.0, 0.0, 3.0), since_origin_enu_m=(since_origin_m, 0.0, 3.0))
     facts = replace(facts, autopilot=replace(facts.autopilot, frame_moves=moved))
     assert is_seen_elsewhere(facts, AUTO) is is_elsewhere
 

@@ -1,6 +1,17 @@
 """What is said of refused data."""
 
-from companion.runtime.vehicle_link import Refusals
+import pytest
+
+from companion.autopilots.state import AutopilotState
+from companion.runtime.step_clock import StepClock
+from companion.runtime.vehicle_link import Refusals, VehicleLink
+from link.messages import PadSighting
+from link.payloads import cdr
+from link.zenoh.keys import Keys
+from tests.companion.world import START_NS, own_state
+
+KEYS = Keys()
+HOUR_NS = 3_600_000_000_000
 
 
 def test_what_a_stranger_sent_reaches_no_terminal_as_it_came() -> None:
@@ -9,3 +20,19 @@ def test_what_a_stranger_sent_reaches_no_terminal_as_it_came() -> None:
     (line,) = refusals.news(1)
     assert line.isprintable()
     assert refusals.recent(1) == line
+
+
+@pytest.mark.parametrize("off_ns", [-HOUR_NS, 0, HOUR_NS])
+@pytest.mark.parametrize("is_placed", [True, False])
+def test_sighting_at_a_time_of_which_the_drones_place_is_not_known_is_refused(off_ns: int, *, is_placed: bool) -> None:
+    history = (own_state(START_NS, (4.0, 5.0, 6.0)),) if is_placed else ()
+    sighting = PadSighting(
+        t_ns=START_NS + 1 + off_ns,
+        position_flu_m=(0.3, -0.2, -2.5),
+        orientation_wxyz=(1.0, 0.0, 0.0, 0.0),
+        position_covariance_m2=(0.04, 0.01, 0.0, 0.01, 0.09, 0.0, 0.0, 0.0, 0.25),
+    )
+    vehicle = VehicleLink(KEYS, StepClock(50.0), None)
+    vehicle.receive(KEYS.pad_pose, cdr.encode(sighting), AutopilotState(history=history))
+    assert vehicle.refusals.total == (is_placed and off_ns != 0)
+    assert ("clock" in vehicle.refused_lately()) is (vehicle.refusals.total > 0)

@@ -81,7 +81,6 @@ COMPRESSED = CompressedPicture(t_ns=T_NS, format="jpeg", data=b"\xff\xd8\xff\xd9
 MESSAGES: list[Message] = [FIX, FIX_VELOCITY, IMU, SIGHTING, TRUTH, ROTORS, PLAN, TICK, IMAGE, COMPRESSED]
 
 HEADER = ros.Header(stamp=ros.Time(sec=SECONDS, nanosec=NANOSECONDS), frame_id="map")
-ZERO_3 = ros.Vector3(x=0.0, y=0.0, z=0.0)
 LEVEL = ros.Quaternion(x=0.0, y=0.0, z=0.0, w=1.0)
 
 

@@ -32,6 +32,35 @@ class _Sink:
         self.closed = True
 
 
+class _Unforeseen(Exception):  # noqa: N818 (whatever a library calls it)
+    """An error that no sink says it raises."""
+
+
+class _SinkOfALibrary(_Sink):
+    """Some records and its end make a library below it raise what nobody has foreseen."""
+
+    def write(self, record: object) -> None:
+        if record == "bad":
+            raise _Unforeseen
+        super().write(record)
+
+    def close(self) -> None:
+        raise _Unforeseen
+
+
+def test_error_that_nobody_has_foreseen_costs_its_record_alone_and_is_named_once(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    sink = _SinkOfALibrary()
+    recorder = BackgroundRecorder(sink)
+    for record in (1, "bad", 2, "bad", 3):
+        recorder.put(record)
+    recorder.close()
+    assert sink.written == [1, 2, 3]
+    assert recorder.dropped == 3
+    assert capsys.readouterr().err.count("_Unforeseen") == 1
+
+
 @pytest.mark.parametrize("kind", [BackgroundRecorder, DirectRecorder])
 def test_recorder_writes_in_order_and_counts_what_cannot_be_written(kind: type[BackgroundRecorder]) -> None:
     sink = _Sink()

@@ -108,6 +108,16 @@ def test_an_instant_sent_twice_is_told_once() -> None:
     assert len(rover.says(gps(), gps())) == 2
 
 
+def test_an_instant_sent_twice_is_told_once_though_the_clock_was_set_forward_in_between() -> None:
+    rover = rover_with_time()
+    assert len(rover.says(gps())) == 2
+    set_forward = mavlink.MAVLink_system_time_message((BOOT_UTC_NS + 99 * 10**9 + 3 * 10**6) // 1000, 99_000)
+    again = rover.says(set_forward, gps())
+    later = rover.says(gps(100.2))
+    assert later[0].t_ns > BOOT_UTC_NS + 100_200_000_000
+    assert again == []
+
+
 @pytest.mark.parametrize(
     ("messages", "words"),
     [

@@ -1,4 +1,6 @@
+import time
 from pathlib import Path
+from typing import Any
 
 import cv2
 import numpy as np
@@ -10,13 +12,15 @@ from hypothesis.extra.numpy import arrays
 from companion.eyes.loop import STOPPED_NS, CameraWatch, Failure, failure_of, note_frame
 from companion.eyes.picture import WholePicture
 from companion.eyes.sight import Frame, SightMemory, sight_step
+from companion.eyes.sources import opening
 from companion.eyes.sources.capture_source import CaptureSource
 from companion.eyes.sources.file_source import FolderSource
 from companion.eyes.sources.frames import gray_of_file, gray_of_image
 from link.errors import UserError
 from link.messages import CameraImage, CompressedPicture
 from link.payloads.checks import PayloadError
-from link.program.clock import SystemClock
+from link.program.clock import Clock, SystemClock
+from link.zenoh.keys import Keys
 from tests.companion.eyes.frames import system
 
 SHADES = np.random.default_rng(2).integers(0, 256, (6, 8)).astype(np.uint8)
@@ -113,6 +117,16 @@ def test_a_video_file_gives_all_its_frames_and_ends(tmp_path: Path) -> None:
 def test_a_camera_that_is_not_there_is_named(address: str, why: str) -> None:
     with pytest.raises(UserError, match=why):
         CaptureSource(address, SystemClock(), latency_s=0.0, size_px=None)
+
+
+def test_frames_have_the_date_that_the_computer_got_after_the_start(monkeypatch: pytest.MonkeyPatch) -> None:
+    clocks: list[Clock] = []
+    monkeypatch.setattr(opening, "CaptureSource", lambda _, clock, **__: clocks.append(clock))
+    options = opening.SourceOptions(size_px=None, latency_s=0.0, rate_hz=30.0)
+    not_used: Any = None
+    opening.open_source("/dev/video0", options, Keys(), not_used)
+    monkeypatch.setattr(time, "time_ns", lambda: 1_800_000_000_123_456_789)
+    assert [clock.now_ns() for clock in clocks] == [1_800_000_000_123_456_789]
 
 
 def test_a_camera_that_stops_and_one_that_freezes_are_told_within_half_a_second() -> None:

@@ -42,10 +42,10 @@ def test_vehicle_that_stands_far_away_is_not_chased() -> None:
     assert decision is None
 
 
-def _vehicle_gains_m(speed_m_s: float) -> float:
+def _vehicle_gains_m(speed_m_s: float, acceleration_max_m_s2: float = 5.0) -> float:
     """How much farther a vehicle gets than a drone that comes from rest to its speed by a ramp, a hold and a ramp."""
-    most_m_s2 = CONFIG.chase.start_acceleration_m_s2
-    jerk_m_s3 = CONFIG.limits.jerk_max_m_s3 * most_m_s2 / CONFIG.limits.acceleration_max_m_s2
+    most_m_s2 = 0.7 * acceleration_max_m_s2
+    jerk_m_s3 = 0.7 * CONFIG.limits.jerk_max_m_s3
     ramp_s = most_m_s2 / jerk_m_s3
     end_s = speed_m_s / most_m_s2 + ramp_s
     t_s = np.linspace(0.0, end_s, 4001)
@@ -84,6 +84,18 @@ def test_chase_starts_when_a_drone_that_accelerates_meets_the_vehicle(
     past_m = max(CONFIG.chase.catch_up_s * faster_m_s, CONFIG.chase.passing_distance_m)
     assert passes(-past_m + 0.05)
     assert not passes(-past_m - 0.05)
+
+
+@pytest.mark.parametrize("acceleration_max_m_s2", [2.1, 5.0, 6.3])
+def test_chase_starts_early_enough_for_the_same_share_of_any_limit(acceleration_max_m_s2: float) -> None:
+    limits = CONFIG.limits.model_copy(update={"acceleration_max_m_s2": acceleration_max_m_s2})
+    config = CONFIG.model_copy(update={"limits": limits})
+    lead_m, pad = _vehicle_gains_m(7.0, acceleration_max_m_s2), pad_at((7.0, 0.0, 0.0))
+    drone = drone_at(HIGH_M, pad=pad)
+    for to_go_m, is_chased in ((lead_m - 0.05, True), (lead_m + 0.05, False)):
+        there = replace(drone, position_enu_m=drone.position_enu_m + np.array([to_go_m, 0.0, 0.0]))
+        facts = replace(situation(pad=pad), drone=there, limits=None)
+        assert (vehicle_passes(facts, config) is not None) is is_chased
 
 
 def test_vehicle_that_is_past_is_let_go_by_the_limit_that_the_autopilot_lowers() -> None:
