@@ -21,6 +21,7 @@ from companion.landing.sortie.over_vehicle import (
     over_vehicle,
     way_speed_m_s,
 )
+from companion.landing.sortie.rise_over_vehicle import rise_over_vehicle
 from companion.landing.state.memory import StepMemory
 from companion.landing.steering.following_height import unseen_height_m
 from companion.landing.steering.targets import NO_FLOOR_M, Aim, hover_aim
@@ -92,9 +93,7 @@ _CLIMB_FIRST_M = 1.0  # a drone that is lower than this under its place climbs b
 _AT_RALLY_M = 3.0  # horizontally, as near as a receiver may err: there the drone comes down to the rally point
 
 
-def sortie_aim(  # noqa: PLR0911 (one for each phase)
-    memory: StepMemory, s: Situation, limits: FlightLimits, config: CompanionConfig
-) -> Aim | None:
+def sortie_aim(memory: StepMemory, s: Situation, limits: FlightLimits, config: CompanionConfig) -> Aim | None:
     """Return where a phase of a sortie wants the drone, None in any other; without a vehicle it stops at the anchor.
 
     Args:
@@ -117,13 +116,16 @@ def sortie_aim(  # noqa: PLR0911 (one for each phase)
         case Phase.LIFT_OFF:
             return lift_off_aim(sortie, pad, s.feet_offset_m)
         case Phase.FOLLOW:
-            return station_aim(sortie, pad, s, limits, config)
+            aim, keep_out = station_aim(sortie, pad, s, limits, config), keep_out_now(pad, config)
         case Phase.RETURN:
-            return return_aim(pad, reference, s, config, limits=limits)
+            aim, keep_out = return_aim(pad, reference, s, config, limits=limits), keep_out_of(pad, config)
         case Phase.ABORT if sortie.station is not None and not is_fix_old(s, config):
-            return climb_aim(pad, reference, s, config, limits=limits)
+            aim, keep_out = climb_aim(pad, reference, s, config, limits=limits), keep_out_now(pad, config)
         case _:
             return None
+    return rise_over_vehicle(
+        aim, memory.model.plan, s.drone, pad, keep_out, feet_offset_m=s.feet_offset_m, config=config
+    )
 
 
 def deck_aim(pad: PadPath, reference: ReferenceState, s: Situation) -> Aim:
