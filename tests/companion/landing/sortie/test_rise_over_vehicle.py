@@ -54,7 +54,7 @@ def plan(start_enu_m: Array, velocity_enu_m_s: Vector3) -> FlownPlan:
         velocity_enu_m_s=velocity,
         acceleration_enu_m_s2=np.zeros_like(velocity),
     )
-    return FlownPlan(trajectory=trajectory, lowest_enu_m=0.0, shaping=None)
+    return FlownPlan(trajectory=trajectory, lowest_enu_m=0.0, shaping=None, limits=LIMITS)
 
 
 def aim_at(up_m: float) -> Aim:
