@@ -9,7 +9,7 @@ from companion.config.sortie import LaunchConfig
 from companion.core.data import Array, FlightLimits
 from companion.planning.guidance import ReferenceState, Target
 from companion.situation.situation import Situation
-from companion.sortie.station import KeepOut, closing_speed_m_s, turn_rates_rad_s
+from companion.sortie.station import KeepOut, closing_speed_m_s, turn_rates_rad_s, turned
 from companion.vehicle.pad import PadPath
 from companion.vehicle.pad_reach import placed_std_m
 from link.messages import StationFrame
@@ -84,6 +84,19 @@ def over_vehicle(way: Array, frame: StationFrame, ahead: float, pad: PadPath, fe
         velocity_enu_m_s=velocity,
         acceleration_enu_m_s2=acceleration,
     )
+
+
+def turns_too_fast(offset_m: Array, frame: StationFrame, ahead: float, pad: PadPath, limits: FlightLimits) -> bool:
+    """Return whether a place (3,) that turns with the vehicle moves faster, or on a tighter curve, than the drone can.
+
+    Where the vehicle turns at the rate w, the place at the arm r moves by w x r and is drawn in by w^2 r beside it.
+    """
+    rate_rad_s = float(turn_rates_rad_s(frame, pad)[0])
+    x, y, _ = turned(offset_m, ahead).tolist()
+    east_m_s, north_m_s = pad.velocity_enu_m_s[0, :2].tolist()
+    speed_m_s = math.hypot(east_m_s - rate_rad_s * y, north_m_s + rate_rad_s * x)
+    is_faster = speed_m_s > max(limits.speed_max_m_s, math.hypot(east_m_s, north_m_s))
+    return is_faster or rate_rad_s**2 * math.hypot(x, y) > limits.acceleration_max_m_s2
 
 
 def offset_now(pad: PadPath, reference: ReferenceState, s: Situation) -> Array:

@@ -122,7 +122,8 @@ def test_every_phase_beside_the_vehicle_raises_its_aim(phase: Phase) -> None:
         ),
         places=Places(anchor_enu_m=here),
         sortie=SortieMemory(
-            station=station, way=Way(station=station, end_m=at_station, place_m=at_station, at_ns=NOW_NS)
+            station=station,
+            way=Way(station=station, frame=station.frame, end_m=at_station, place_m=at_station, at_ns=NOW_NS),
         ),
     )
     facts = replace(situation(pad=PAD), drone=drone(here, (0.0, 0.0, 0.0)))
