@@ -29,6 +29,9 @@ _BELOW_M = 0.5  # so far below the lowest station the planner's floor is: it is 
 def keep_out_of(pad: PadPath, config: CompanionConfig, *, stds: float = 0.0) -> KeepOut:
     """Return the cylinder about the vehicle that ways and stations stay out of.
 
+    Its antenna is on the vehicle, too, which reaches from the pad's centre as far. Without a heading the path is
+    the antenna's, and the pad may be at the end of the lever arm on any side of it.
+
     Args:
         pad: with its standard deviation.
         config: radius, margins and heights.
@@ -37,8 +40,10 @@ def keep_out_of(pad: PadPath, config: CompanionConfig, *, stds: float = 0.0) -> 
     sortie = config.sortie
     pad_m = math.sqrt(2.0) * pad.half_width_m if math.isfinite(pad.half_width_m) else 0.0
     east_m, north_m, up_m = (stds * placed_std_m(pad)).tolist()
+    arm_m, reaches_m = pad.mounting.arm_m, max(sortie.vehicle_radius_m, pad_m, pad.mounting.arm_m)
+    unsure_m = max(east_m, north_m) + (arm_m if pad.yaw_rad is None else 0.0)
     return KeepOut(
-        radius_m=max(sortie.vehicle_radius_m, pad_m) + sortie.keep_out_margin_m + max(east_m, north_m),
+        radius_m=reaches_m + sortie.keep_out_margin_m + unsure_m,
         over_m=config.descent.alignment.height_m + up_m,
         lowest_m=sortie.ground_clearance_m - pad.height_m + up_m,
     )
