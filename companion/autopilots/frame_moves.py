@@ -82,11 +82,25 @@ def after_origin(moves: FrameMoves, known: LocalFrame | None, frame: LocalFrame)
     counted = replace(moves, origin_count=moves.origin_count + 1, since_origin_enu_m=_NOWHERE)
     if known is None or known.projection is not frame.projection:
         return counted
-    origin = known.origin
-    moved = local_from_geodetic(frame, origin.latitude_rad, origin.longitude_rad, origin.altitude_m)
-    if hypot(*(told - seen for told, seen in zip(moved, moves.since_origin_enu_m, strict=True))) > _ONE_STEP_M:
+    moved = _moved_by(known, frame)
+    if _apart_m(moved, moves.since_origin_enu_m) > _ONE_STEP_M:
         return counted
     return replace(moves, since_origin_enu_m=_NOWHERE, origin_shift_enu_m=_sum(moves.origin_shift_enu_m, moved))
+
+
+def has_stepped_with(moves: FrameMoves, known: LocalFrame, frame: LocalFrame) -> bool:
+    """Return whether the drone has stepped by what another origin moves it, and farther than a step is unsure."""
+    stepped = moves.since_origin_enu_m
+    return hypot(*stepped) > _ONE_STEP_M and _apart_m(_moved_by(known, frame), stepped) <= _ONE_STEP_M
+
+
+def _moved_by(known: LocalFrame, frame: LocalFrame) -> Vector3:
+    origin = known.origin
+    return local_from_geodetic(frame, origin.latitude_rad, origin.longitude_rad, origin.altitude_m)
+
+
+def _apart_m(a: Vector3, b: Vector3) -> float:
+    return hypot(*(one - other for one, other in zip(a, b, strict=True)))
 
 
 def _unexplained(before: OwnState, own: OwnState, velocity: Vector3, duration_s: float) -> tuple[Vector3, float]:

@@ -7,7 +7,7 @@ from types import MappingProxyType
 from msgspec import Struct, field
 
 from companion.autopilots.driver import NO_AUTOPILOT, AutopilotView, Driver
-from companion.autopilots.frame_moves import after_origin
+from companion.autopilots.frame_moves import after_origin, has_stepped_with
 from companion.autopilots.heartbeat import with_heartbeat, with_landed_state, with_mode
 from companion.autopilots.own_reports import (
     HISTORY_NS,
@@ -167,7 +167,11 @@ def _add_report(state: AutopilotState, own: OwnState) -> AutopilotState:
         return state
     seen = state.view.range_down
     seen = None if seen is None else replace(seen, own=None)
-    return replace(state, view=replace(state.view, frame_moves=moves, range_down=seen))
+    state = replace(state, view=replace(state.view, frame_moves=moves, range_down=seen))
+    doubted, frame = state.origin_doubted_msl, state.view.frame
+    if doubted is None or frame is None or not _has_stepped_along(state, doubted):
+        return state
+    return _place_origin(replace(state, origin_msl=doubted, origin_doubted_msl=None), frame.projection)
 
 
 def _attitude(state: AutopilotState, message: Message) -> AutopilotState:
@@ -193,16 +197,29 @@ def has_frame_moved(before: AutopilotState, state: AutopilotState) -> bool:
 
 
 def _hear_origin(state: AutopilotState, told: Datum | None) -> AutopilotState:
-    """Take the first origin, and another one that is told again once the drone has told its place in between."""
+    """Take the first origin, and another one that the drone has stepped with, which no single message can feign.
+
+    Any other is taken once it is told again after the drone has told its place in between.
+    """
     known, doubted, newest_ns = state.origin_msl, state.origin_doubted_msl, state.own.t_ns if state.own else 0
     if told is None:
         return state
     if known is not None and is_same(told, known):
         return replace(state, origin_doubted_msl=None)
     is_told_again = doubted is not None and is_same(told, doubted)
-    if known is None or (is_told_again and (newest_ns != state.doubted_ns or not newest_ns)):
+    is_confirmed = is_told_again and (newest_ns != state.doubted_ns or not newest_ns)
+    if known is None or is_confirmed or _has_stepped_along(state, told):
         return replace(state, origin_msl=told, origin_doubted_msl=None)
     return state if is_told_again else replace(state, origin_doubted_msl=told, doubted_ns=newest_ns)
+
+
+def _has_stepped_along(state: AutopilotState, told: Datum) -> bool:
+    known, frame = state.origin_msl, state.view.frame
+    if known is None or frame is None:
+        return False
+    return has_stepped_with(
+        state.view.frame_moves, replace(frame, origin=known), LocalFrame(origin=told, projection=frame.projection)
+    )
 
 
 def _hear_geoid(state: AutopilotState, message: Message) -> AutopilotState:

@@ -71,6 +71,7 @@ class Reason(Enum):
         " pad_pose"
     )
     VEHICLE_OUTRUNS = "vehicle faster than the limit"
+    STATION_OUTRUNS = "vehicle turns too fast for a station so far from it: give a nearer one, or in the frame north"
     OWN_POSITION_OLD = "own position too old"
     OWN_ATTITUDE_OLD = "own attitude too old"
     SETPOINT_NOT_FOLLOWED = "setpoint not followed"

@@ -104,7 +104,7 @@ def fly(
     )
     request = replace(request, limits=limit_tilt(request, model.tracking.air_enu_m_s2))
     guidance, plan = system.guidance.plan(model.guidance, request)
-    flown = flown_plan(plan, period_s, float(aim.floor_enu_m[0]), inputs.shaping)
+    flown = flown_plan(plan, period_s, float(aim.floor_enu_m[0]), inputs.shaping, limits)
     plan = replace(plan, next_state=state_at(flown, period_s))
     model = replace(
         model,

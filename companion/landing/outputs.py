@@ -133,7 +133,10 @@ def _cause(memory: StepMemory, situation: Situation, config: CompanionConfig) ->
     in_phase_s = (situation.monotonic_ns - progress.since_ns) * 1e-9
     if progress.phase is Phase.TOUCHDOWN and in_phase_s > _STOPPED_WITHIN_S:
         return Cause(Reason.MOTORS_RUN, (in_phase_s,))
-    return memory.sortie.warning or why_held_up(memory, situation, config) or progress.cause
+    way = memory.sortie.way
+    is_outrun = way is not None and way.frame is not way.station.frame
+    outrun = Cause(Reason.STATION_OUTRUNS) if is_outrun and progress.phase is Phase.FOLLOW else None
+    return memory.sortie.warning or outrun or why_held_up(memory, situation, config) or progress.cause
 
 
 def _time_to_contact_s(relative: Approach, limits: FlightLimits, descent: DescentConfig) -> float:

@@ -13,7 +13,7 @@ from msgspec import Struct
 
 from companion.core.data import Array
 from companion.core.reasons import Cause
-from link.messages import Station
+from link.messages import Station, StationFrame
 from link.records import replace
 
 RESOLUTION = 0.01
@@ -82,12 +82,14 @@ class Way(Struct, frozen=True, kw_only=True, eq=False):
 
     Attributes:
         station: that was ordered.
-        end_m: (3,) at its end, where that is kept: farther out or higher where the vehicle's place is vague.
+        frame: that it is laid in: the station's, or north where the vehicle turns too fast for a place so far from it.
+        end_m: (3,) at its end in the station's frame, farther out or higher where the vehicle's place is vague.
         place_m: (3,) on it, ahead, left and up of the pad's centre, where the drone is to be now.
         at_ns: when that was so, monotonic.
     """
 
     station: Station
+    frame: StationFrame
     end_m: Array
     place_m: Array
     at_ns: int

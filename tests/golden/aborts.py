@@ -111,13 +111,14 @@ def _limit_is_lowered(flight: FaultFlight) -> None:
     flight.tell(mavlink.MAVLink_param_set_message(1, 1, b"MPC_XY_VEL_MAX", _LIMIT_M_S, kind))
 
 
-def _pad_is_described(forward_m: float, up_m: float) -> Fault:
-    """Let the vehicle describe its pad anew: its centre is elsewhere than it said before."""
+def _pad_is_described(forward_m: float, up_m: float, over_road_m: float = 0.0) -> Fault:
+    """Let the vehicle describe its pad anew: its centre is elsewhere than it said before, or higher over its road."""
 
     def describe(flight: FaultFlight) -> None:
         pad = flight.simulation.vehicle.pad
         x_m, y_m, z_m = pad.antenna_to_pad_m
-        flight.companion.receive_pad(replace(pad, antenna_to_pad_m=(x_m + forward_m, y_m, z_m + up_m)))
+        arm_m, height_m = (x_m + forward_m, y_m, z_m + up_m), pad.height_m + over_road_m
+        flight.companion.receive_pad(replace(pad, antenna_to_pad_m=arm_m, height_m=height_m))
 
     return describe
 
@@ -180,14 +181,15 @@ ABORTS: dict[str, Abort] = {
     ),
     "outrun": Abort(reason=Reason.VEHICLE_OUTRUNS, phase=Phase.ALIGN, fault=_limit_is_lowered),
     "below_pad": Abort(reason=Reason.BELOW_PAD, fault=_pad_is_described(forward_m=0.0, up_m=_RAISED_M)),
-    "nothing_touched": Abort(reason=Reason.NOTHING_TOUCHED, fault=_pad_is_described(forward_m=0.0, up_m=_WRONG_M)),
+    "nothing_touched": Abort(
+        reason=Reason.NOTHING_TOUCHED, fault=_pad_is_described(forward_m=0.0, up_m=_WRONG_M, over_road_m=_WRONG_M)
+    ),
     "road_below": Abort(
         reason=Reason.ROAD_BELOW,
         scenario="straight_15",
         phase=Phase.IDLE,
         fault=_vehicles_clock_is_set(-_OVER_EDGE_M / 15.0),
         within_s=40.0,
-        touches=True,
     ),
     "offset_unknown": Abort(
         reason=Reason.OFFSET_UNKNOWN,

@@ -8,6 +8,7 @@ from companion.core.reasons import Cause, Reason
 from companion.landing.decisions.contact import (
     Verdict,
     does_not_fall,
+    is_over_road,
     is_stopped_by_pad,
     trial_press_m_s2,
     trial_s,
@@ -132,8 +133,10 @@ def _is_in_disputed_contact(s: Situation, c: CompanionConfig) -> bool:
     return verdict(signs_of(s, c.touchdown), c) in {Verdict.CONTACT, Verdict.DISPUTED}
 
 
-def _is_at_edge(s: Situation, c: CompanionConfig) -> bool:
-    return verdict(signs_of(s, c.touchdown), c) is Verdict.AT_EDGE
+def _is_road_below(s: Situation, c: CompanionConfig) -> bool:
+    """Return whether the range finder sees the road where the pad should be, be the drone at an edge or in the air."""
+    signs = signs_of(s, c.touchdown)
+    return is_over_road(signs, c) or verdict(signs, c) is Verdict.AT_EDGE
 
 
 def _is_held_up(s: Situation, c: CompanionConfig) -> bool:
@@ -205,8 +208,8 @@ MISSED = (
     Condition(
         reason=Reason.ROAD_BELOW,
         phases=_DESCENT,
-        is_true=_is_at_edge,
-        hold_s=lambda _, c: c.touchdown.range_finder.disputed_hold_s,
+        is_true=_is_road_below,
+        hold_s=lambda _, c: c.touchdown.range_finder.off_hold_s,
     ),
 )
 """What ends a commitment to land as well: the pad is not where it is said to be."""

@@ -128,6 +128,18 @@ def may_force_motors_off(
             return False
 
 
+def is_over_road(signs: Signs, config: CompanionConfig) -> bool:
+    """Return whether a drone that is about to touch what is said to be the pad has the road below it.
+
+    A lever arm of the wrong sign, a wrong heading or clock lead beside the vehicle so: nothing there stops the drone.
+    """
+    seen_m, height_m, distance_m = signs.range_height_m, signs.height_m, signs.distance_m
+    if seen_m is None or height_m is None or distance_m is None or height_m >= config.descent.commit_height_m:
+        return False
+    is_over = distance_m < over_pad_radius_m(signs.pad_half_width_m, config)
+    return is_over and _is_road(seen_m - height_m, signs, config.touchdown)
+
+
 def _is_road(seen_m: float, signs: Signs, config: TouchdownConfig) -> bool:
     """Return whether a range finder sees the road beside the vehicle; a low roof might be mistaken for it."""
     road_m, off_m = signs.road_below_m, config.range_finder.off_max_m

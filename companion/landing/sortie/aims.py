@@ -19,8 +19,10 @@ from companion.landing.sortie.over_vehicle import (
     keep_out_of,
     offset_now,
     over_vehicle,
+    turns_too_fast,
     way_speed_m_s,
 )
+from companion.landing.sortie.rise_over_vehicle import rise_over_vehicle
 from companion.landing.state.memory import StepMemory
 from companion.landing.steering.following_height import unseen_height_m
 from companion.landing.steering.targets import NO_FLOOR_M, Aim, hover_aim
@@ -44,37 +46,63 @@ def advance_way(memory: StepMemory, s: Situation, limits: FlightLimits, config: 
     sortie, reference, pad = memory.sortie, memory.model.reference, s.pad
     if memory.progress.phase is not Phase.FOLLOW or sortie.station is None or reference is None or pad is None:
         return memory if sortie.way is None else replace(memory, sortie=replace(sortie, way=None))
-    keep_out, ahead = keep_out_now(pad, config), ahead_rad(sortie.station.frame, pad, sortie.ahead_rad)
-    here, way = turned(offset_now(pad, reference, s), -ahead), sortie.way
-    if way is None or way.station != sortie.station or not is_clear(here, way.place_m, keep_out):
-        way = Way(station=sortie.station, end_m=here, place_m=here, at_ns=s.monotonic_ns)
+    way = _way_now(sortie, offset_now(pad, reference, s), pad, limits, now_ns=s.monotonic_ns, config=config)
     dt_s = min((s.monotonic_ns - way.at_ns) * 1e-9, STEP_MAX_S)
-    wanted, keep_out, rates = _ends_at(way, ahead, pad, limits, config)
+    wanted, keep_out, rates = _ends_at(way, sortie.ahead_rad, pad, limits, config)
     place = way_to(way.place_m, wanted, keep_out, np.array([0.0, dt_s]), rates)[-1]
-    way = replace(way, end_m=wanted, place_m=np.asarray(place), at_ns=s.monotonic_ns)
+    way = replace(way, place_m=np.asarray(place), at_ns=s.monotonic_ns)
     return replace(memory, sortie=replace(sortie, way=way))
+
+
+def _way_now(
+    sortie: SortieMemory,
+    here_enu_m: Array,
+    pad: PadPath,
+    limits: FlightLimits,
+    *,
+    now_ns: int,
+    config: CompanionConfig,
+) -> Way:
+    """Return the way with its end now: the last one, or one that begins where the drone is, `here_enu_m` (3,).
+
+    Where the vehicle would swing the place on it, or its end, faster than the drone can fly, the way is laid without
+    turning along, as that home is: the place would leave the drone behind, farther at each turn.
+    """
+    station, way, keep_out = sortie.station, sortie.way, keep_out_now(pad, config)
+    if station is None:
+        raise ValueError("nothing is followed without a station")
+    end_m = keep_outside(np.array(station.offset_m), keep_out)
+    ahead = ahead_rad(station.frame, pad, sortie.ahead_rad)
+    here_m = turned(here_enu_m, -ahead)
+    place_m = way.place_m if way is not None and way.frame is station.frame and way.station == station else here_m
+    is_outrun = any(turns_too_fast(one, station.frame, ahead, pad, limits) for one in (place_m, end_m))
+    frame = StationFrame.NORTH if is_outrun else station.frame
+    begins_m = turned(here_enu_m, -ahead_rad(frame, pad, sortie.ahead_rad))
+    goes_on = way is not None and way.station == station and way.frame is frame
+    if way is not None and goes_on and is_clear(begins_m, way.place_m, keep_out):
+        return replace(way, end_m=end_m)
+    return Way(station=station, frame=frame, end_m=end_m, place_m=begins_m, at_ns=now_ns)
 
 
 def station_aim(sortie: SortieMemory, pad: PadPath, s: Situation, limits: FlightLimits, config: CompanionConfig) -> Aim:
     """Return the aim that keeps the station, or is on the way to it round the vehicle."""
     if sortie.way is None:
         raise ValueError("nothing is followed without a way to its station")
-    frame = sortie.way.station.frame
-    ahead = ahead_rad(frame, pad, sortie.ahead_rad)
-    wanted, keep_out, rates = _ends_at(sortie.way, ahead, pad, limits, config)
+    wanted, keep_out, rates = _ends_at(sortie.way, sortie.ahead_rad, pad, limits, config)
     way = way_to(sortie.way.place_m, wanted, keep_out, pad.offset_s, rates)
-    target = over_vehicle(way, frame, ahead, pad, s.feet_offset_m)
+    ahead = ahead_rad(sortie.way.frame, pad, sortie.ahead_rad)
+    target = over_vehicle(way, sortie.way.frame, ahead, pad, s.feet_offset_m)
     return Aim(target=target, floor_enu_m=floor_beside(pad, keep_out, s))
 
 
 def _ends_at(
-    way: Way, ahead: float, pad: PadPath, limits: FlightLimits, config: CompanionConfig
+    way: Way, before_rad: float, pad: PadPath, limits: FlightLimits, config: CompanionConfig
 ) -> tuple[Array, KeepOut, tuple[float, float]]:
-    """Return the end (3,) of the way, what it leads round, and the acceleration and the speed on it."""
-    keep_out = keep_out_now(pad, config)
-    wanted = keep_outside(np.array(way.station.offset_m), keep_out)
+    """Return the end (3,) of the way in its frame, what it leads round, and the acceleration and the speed on it."""
+    ahead = ahead_rad(way.frame, pad, before_rad)
+    wanted = turned(way.end_m, ahead_rad(way.station.frame, pad, before_rad) - ahead)
     speed_m_s = way_speed_m_s(turned(wanted - way.place_m, ahead), pad, limits)
-    return wanted, keep_out, (WAY_SHARE * limits.acceleration_max_m_s2, speed_m_s)
+    return wanted, keep_out_now(pad, config), (WAY_SHARE * limits.acceleration_max_m_s2, speed_m_s)
 
 
 def station_speed_m_s(sortie: SortieMemory, s: Situation) -> float:
@@ -92,9 +120,7 @@ _CLIMB_FIRST_M = 1.0  # a drone that is lower than this under its place climbs b
 _AT_RALLY_M = 3.0  # horizontally, as near as a receiver may err: there the drone comes down to the rally point
 
 
-def sortie_aim(  # noqa: PLR0911 (one for each phase)
-    memory: StepMemory, s: Situation, limits: FlightLimits, config: CompanionConfig
-) -> Aim | None:
+def sortie_aim(memory: StepMemory, s: Situation, limits: FlightLimits, config: CompanionConfig) -> Aim | None:
     """Return where a phase of a sortie wants the drone, None in any other; without a vehicle it stops at the anchor.
 
     Args:
@@ -117,13 +143,16 @@ def sortie_aim(  # noqa: PLR0911 (one for each phase)
         case Phase.LIFT_OFF:
             return lift_off_aim(sortie, pad, s.feet_offset_m)
         case Phase.FOLLOW:
-            return station_aim(sortie, pad, s, limits, config)
+            aim, keep_out = station_aim(sortie, pad, s, limits, config), keep_out_now(pad, config)
         case Phase.RETURN:
-            return return_aim(pad, reference, s, config, limits=limits)
+            aim, keep_out = return_aim(pad, reference, s, config, limits=limits), keep_out_of(pad, config)
         case Phase.ABORT if sortie.station is not None and not is_fix_old(s, config):
-            return climb_aim(pad, reference, s, config, limits=limits)
+            aim, keep_out = climb_aim(pad, reference, s, config, limits=limits), keep_out_now(pad, config)
         case _:
             return None
+    return rise_over_vehicle(
+        aim, memory.model.plan, s.drone, pad, keep_out, feet_offset_m=s.feet_offset_m, config=config
+    )
 
 
 def deck_aim(pad: PadPath, reference: ReferenceState, s: Situation) -> Aim:

@@ -9,7 +9,7 @@ from companion.config.sortie import LaunchConfig
 from companion.core.data import Array, FlightLimits
 from companion.planning.guidance import ReferenceState, Target
 from companion.situation.situation import Situation
-from companion.sortie.station import KeepOut, closing_speed_m_s, turn_rates_rad_s
+from companion.sortie.station import KeepOut, closing_speed_m_s, turn_rates_rad_s, turned
 from companion.vehicle.pad import PadPath
 from companion.vehicle.pad_reach import placed_std_m
 from link.messages import StationFrame
@@ -29,6 +29,9 @@ _BELOW_M = 0.5  # so far below the lowest station the planner's floor is: it is 
 def keep_out_of(pad: PadPath, config: CompanionConfig, *, stds: float = 0.0) -> KeepOut:
     """Return the cylinder about the vehicle that ways and stations stay out of.
 
+    Its antenna is on the vehicle, too, which reaches from the pad's centre as far. Without a heading the path is
+    the antenna's, and the pad may be at the end of the lever arm on any side of it.
+
     Args:
         pad: with its standard deviation.
         config: radius, margins and heights.
@@ -37,8 +40,10 @@ def keep_out_of(pad: PadPath, config: CompanionConfig, *, stds: float = 0.0) -> 
     sortie = config.sortie
     pad_m = math.sqrt(2.0) * pad.half_width_m if math.isfinite(pad.half_width_m) else 0.0
     east_m, north_m, up_m = (stds * placed_std_m(pad)).tolist()
+    arm_m, reaches_m = pad.mounting.arm_m, max(sortie.vehicle_radius_m, pad_m, pad.mounting.arm_m)
+    unsure_m = max(east_m, north_m) + (arm_m if pad.yaw_rad is None else 0.0)
     return KeepOut(
-        radius_m=max(sortie.vehicle_radius_m, pad_m) + sortie.keep_out_margin_m + max(east_m, north_m),
+        radius_m=reaches_m + sortie.keep_out_margin_m + unsure_m,
         over_m=config.descent.alignment.height_m + up_m,
         lowest_m=sortie.ground_clearance_m - pad.height_m + up_m,
     )
@@ -84,6 +89,19 @@ def over_vehicle(way: Array, frame: StationFrame, ahead: float, pad: PadPath, fe
         velocity_enu_m_s=velocity,
         acceleration_enu_m_s2=acceleration,
     )
+
+
+def turns_too_fast(offset_m: Array, frame: StationFrame, ahead: float, pad: PadPath, limits: FlightLimits) -> bool:
+    """Return whether a place (3,) that turns with the vehicle moves faster, or on a tighter curve, than the drone can.
+
+    Where the vehicle turns at the rate w, the place at the arm r moves by w x r and is drawn in by w^2 r beside it.
+    """
+    rate_rad_s = float(turn_rates_rad_s(frame, pad)[0])
+    x, y, _ = turned(offset_m, ahead).tolist()
+    east_m_s, north_m_s = pad.velocity_enu_m_s[0, :2].tolist()
+    speed_m_s = math.hypot(east_m_s - rate_rad_s * y, north_m_s + rate_rad_s * x)
+    is_faster = speed_m_s > max(limits.speed_max_m_s, math.hypot(east_m_s, north_m_s))
+    return is_faster or rate_rad_s**2 * math.hypot(x, y) > limits.acceleration_max_m_s2
 
 
 def offset_now(pad: PadPath, reference: ReferenceState, s: Situation) -> Array:

@@ -12,7 +12,7 @@ from msgspec import Struct
 
 from companion.autopilots.limits import RATE_LAG_S
 from companion.autopilots.response import Cascade, Shaping
-from companion.core.data import Array
+from companion.core.data import Array, FlightLimits
 from companion.planning.guidance import PlanResult, ReferenceState, Trajectory
 from link.records import replace
 
@@ -24,14 +24,18 @@ class FlownPlan(Struct, frozen=True, kw_only=True, eq=False):
         trajectory: of the virtual model, from where it was when the plan was made.
         lowest_enu_m: height above which a setpoint that is carried on has to end.
         shaping: of the autopilot; None of one that holds setpoints as they came.
+        limits: of the plan.
     """
 
     trajectory: Trajectory
     lowest_enu_m: float
     shaping: Shaping | None
+    limits: FlightLimits
 
 
-def flown_plan(plan: PlanResult, period_s: float, lowest_enu_m: float, shaping: Shaping | None) -> FlownPlan:
+def flown_plan(
+    plan: PlanResult, period_s: float, lowest_enu_m: float, shaping: Shaping | None, limits: FlightLimits
+) -> FlownPlan:
     """Return the plan as it is flown: its next state, `period_s` after it was made, is one of its instants."""
     path, following = plan.trajectory, plan.next_state
     later = int(path.offset_s.searchsorted(period_s, side="right"))
@@ -41,7 +45,7 @@ def flown_plan(plan: PlanResult, period_s: float, lowest_enu_m: float, shaping: 
         velocity_enu_m_s=_through(path.velocity_enu_m_s, following.velocity_enu_m_s, later),
         acceleration_enu_m_s2=_through(path.acceleration_enu_m_s2, following.acceleration_enu_m_s2, later),
     )
-    return FlownPlan(trajectory=trajectory, lowest_enu_m=lowest_enu_m, shaping=shaping)
+    return FlownPlan(trajectory=trajectory, lowest_enu_m=lowest_enu_m, shaping=shaping, limits=limits)
 
 
 def state_at(flown: FlownPlan, offset_s: float) -> ReferenceState:
@@ -54,7 +58,7 @@ def state_at(flown: FlownPlan, offset_s: float) -> ReferenceState:
         velocity_enu_m_s=flown.trajectory.velocity_enu_m_s[0],
         acceleration_enu_m_s2=flown.trajectory.acceleration_enu_m_s2[0],
     )
-    return keep_up(planned, before, flown.lowest_enu_m, flown.shaping, offset_s)
+    return keep_up(planned, before, flown.lowest_enu_m, flown.shaping, limits=flown.limits, elapsed_s=offset_s)
 
 
 def _through(path: Array, following: Array, later: int) -> Array:
@@ -90,7 +94,13 @@ def lead_acceleration(reference: ReferenceState, plan: FlownPlan, offset_s: floa
 
 
 def keep_up(
-    planned: ReferenceState, before: ReferenceState, lowest_enu_m: float, shaping: Shaping, elapsed_s: float
+    planned: ReferenceState,
+    before: ReferenceState,
+    lowest_enu_m: float,
+    shaping: Shaping,
+    *,
+    limits: FlightLimits,
+    elapsed_s: float,
 ) -> ReferenceState:
     """Return the planned next state, kept up by `limit_sink`, so that it may be carried on.
 
@@ -101,9 +111,10 @@ def keep_up(
         before: the model when the plan was made.
         lowest_enu_m: where it is to end above.
         shaping: of the autopilot.
+        limits: of the plan.
         elapsed_s: since then.
     """
-    limited = limit_sink(planned, lowest_enu_m, shaping)
+    limited = limit_sink(planned, lowest_enu_m, shaping, limits)
     if limited is planned:
         return planned
     up = extrapolate(replace(before, acceleration_enu_m_s2=limited.acceleration_enu_m_s2), elapsed_s)
@@ -112,15 +123,20 @@ def keep_up(
         velocity_enu_m_s=np.array([*planned.velocity_enu_m_s[:2], up.velocity_enu_m_s[2]]),
         acceleration_enu_m_s2=limited.acceleration_enu_m_s2,
     )
-    return limit_sink(kept_up, lowest_enu_m, shaping)
+    return limit_sink(kept_up, lowest_enu_m, shaping, limits)
 
 
-def limit_sink(reference: ReferenceState, lowest_enu_m: float, shaping: Shaping) -> ReferenceState:
+def limit_sink(
+    reference: ReferenceState, lowest_enu_m: float, shaping: Shaping, limits: FlightLimits
+) -> ReferenceState:
     """Return the model for an autopilot that carries a setpoint on, should no other follow.
 
     Its acceleration upwards is at least such that the drone, which then brakes, ends above `lowest_enu_m`: ArduCopter
     was flown into the road at 1.6 m/s from a chase whose companion had died. The rate w at the end of the time T obeys
     `h + (v + w) T / 2 - w^2 / 2A + w A / 2J >= 0` with the height h, the rate v, the braking A and its jerk J.
+
+    One that is too low, or sinks too fast, to end there within T climbs as the limits allow: of a short T it would be
+    asked for any acceleration.
     """
     duration_s, braking_m_s2 = shaping.carried_s, shaping.vertical_acceleration_m_s2
     turning_s = braking_m_s2 / shaping.vertical_jerk_m_s3
@@ -132,8 +148,8 @@ def limit_sink(reference: ReferenceState, lowest_enu_m: float, shaping: Shaping)
         brakes_m_s = braking_m_s2 * (duration_s + turning_s)
         end_m_s = 0.5 * (brakes_m_s - math.sqrt(brakes_m_s**2 + 4.0 * braking_m_s2 * room_m))
     else:
-        end_m_s = -room_m / duration_s
-    least_m_s2 = (end_m_s - climb_m_s) / duration_s
+        end_m_s = min(-room_m / duration_s, limits.climb_max_m_s)
+    least_m_s2 = min((end_m_s - climb_m_s) / duration_s, limits.vertical_acceleration_max_m_s2)
     if az >= least_m_s2:
         return reference
     return replace(reference, acceleration_enu_m_s2=np.array([ax, ay, least_m_s2]))

@@ -167,6 +167,27 @@ def test_origin_that_moves_by_what_the_drone_stepped_leaves_the_ground_known(*, 
     assert again.origin_count == 2
 
 
+@pytest.mark.parametrize("steps_first", [True, False])
+@pytest.mark.parametrize(("north_1e7", "is_taken"), [(200, True), (160, True), (90, False), (-200, False)])
+def test_origin_that_the_drone_has_stepped_with_is_taken_at_once(
+    north_1e7: int, *, is_taken: bool, steps_first: bool
+) -> None:
+    known, other = _origin(475_000_000, 80_000_000, 400_000), _origin(475_000_000 + north_1e7, 80_000_000, 400_000)
+    before, steps = _at(0, (0.0, 0.0, 0.0)), _at(20, (-2.2, 0.0, 0.0))
+    state = _hear(known, LEVEL, before, *((steps, other) if steps_first else (other, steps)))
+    assert state.view.frame is not None
+    assert (state.view.frame.origin.latitude_rad > math.radians(47.5)) is is_taken
+    assert any(state.view.frame_moves.origin_shift_enu_m) is is_taken
+    assert state.view.frame_moves.origin_count == 1
+
+
+def test_origin_that_is_near_the_known_one_is_not_taken_for_the_drones_corrections() -> None:
+    known, near = _origin(475_000_000, 80_000_000, 400_000), _origin(475_000_030, 80_000_000, 400_000)
+    state = _hear(known, LEVEL, _at(0, (0.0, 0.0, 0.0)), _at(20, (-0.33, 0.0, 0.0)))
+    assert any(state.view.frame_moves.shift_enu_m)
+    assert _hear(near, state=state).view.frame == state.view.frame
+
+
 @given(others=st.lists(st.integers(480_000_000, 490_000_000), unique=True, max_size=5))
 def test_other_origins_that_are_told_once_each_move_nothing(others: list[int]) -> None:
     known = _origin(475_000_000, 80_000_000, 400_000)

@@ -194,3 +194,11 @@ def test_first_of_those_that_hold_is_told() -> None:
     held.pop(SILENCES[0].reason)
     assert first_cause(SILENCES, held, facts, CONFIG) == cause_of(SILENCES[1], facts, CONFIG)
     assert first_cause(SILENCES, {}, facts, CONFIG) is None
+
+
+def test_road_below_a_drone_that_sinks_onto_its_pad_ends_the_landing_though_nothing_holds_it_up() -> None:
+    (condition,) = (one for one in MISSED if one.reason is Reason.ROAD_BELOW)
+    facts = changed(situation(0.3, 0.1, pad=replace(pad_at(), height_m=1.5)), range_height_m=1.8)
+    assert condition.is_true(facts, CONFIG)
+    assert condition.hold_s(facts, CONFIG) == TOUCHDOWN.range_finder.off_hold_s
+    assert not condition.is_true(changed(facts, range_height_m=0.3), CONFIG)

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from companion.landing.decisions.contact import Verdict, may_force_motors_off, verdict
+from companion.landing.decisions.contact import Verdict, is_over_road, may_force_motors_off, verdict
 from companion.landing.decisions.contact_signs import signs_of, signs_text
 from companion.situation.situation import Situation
 from companion.vehicle.pad_reach import over_pad_radius_m
@@ -20,6 +20,7 @@ TOUCHDOWN, DESCENT = CONFIG.touchdown, CONFIG.descent
 ABSURD = st.one_of(st.floats(-1e6, 1e6), st.sampled_from([float("nan"), float("inf"), -float("inf"), 0.0, 1e30, -1e30]))
 LONG_S = 1e3
 OFF_M = TOUCHDOWN.range_finder.off_max_m
+COMMIT_M = DESCENT.commit_height_m
 
 # Everything that a step's facts are made of, each as one source that may fail.
 SOURCES = (
@@ -197,6 +198,29 @@ def test_range_finder_that_sees_the_road_beside_the_vehicle_says_where_the_drone
     signs = signs_of(replace(facts, pad=pad), TOUCHDOWN)
     assert verdict(signs, CONFIG) is expected
     assert may_force_motors_off(signs, LONG_S, CONFIG) is (expected is not Verdict.AT_EDGE)
+
+
+@pytest.mark.parametrize(
+    ("height_m", "beside_m", "seen_m", "expected"),
+    [
+        (COMMIT_M - 0.01, 0.1, 1.5 + COMMIT_M, True),
+        (COMMIT_M + 0.01, 0.1, 1.5 + COMMIT_M, False),
+        (-0.3, 0.1, 1.2, True),
+        (0.2, 0.1, 1.7 - OFF_M - 0.01, False),  # a box under it, or a pad that is lower than it is said to be
+        (0.2, 0.7, 1.7, False),  # the drone itself is beside the pad
+        (0.2, 0.1, 0.2, False),
+        (0.2, 0.1, None, False),
+    ],
+)
+def test_drone_that_sinks_freely_with_the_road_below_it_where_the_pad_should_be_knows_it(
+    height_m: float, beside_m: float, seen_m: float | None, *, expected: bool
+) -> None:
+    facts = changed(situation(height_m, beside_m, pad=replace(pad_at(), height_m=1.5)), range_height_m=seen_m)
+    assert facts.drone is not None
+    sinks = replace(facts.drone, velocity_enu_m_s=facts.drone.velocity_enu_m_s - np.array([0.0, 0.0, 0.4]))
+    signs = signs_of(replace(facts, drone=sinks), TOUCHDOWN)
+    assert verdict(signs, CONFIG) is Verdict.AIRBORNE
+    assert is_over_road(signs, CONFIG) is expected
 
 
 @pytest.mark.parametrize(

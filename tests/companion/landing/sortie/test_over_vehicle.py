@@ -6,9 +6,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from companion.core.data import Array
-from companion.landing.sortie.over_vehicle import over_vehicle
-from companion.vehicle.pad import PadPath
+from companion.landing.sortie.over_vehicle import keep_out_of, over_vehicle
+from companion.vehicle.pad import PadMounting, PadPath
 from link.messages import StationFrame
+from link.records import replace
+from tests.companion.facts import CONFIG, pad_at
 
 OFFSET_S = np.linspace(0.0, 4.0, 401)
 INSIDE = slice(3, -3)  # numpy's differences are of the first order at the ends
@@ -50,3 +52,15 @@ def test_velocity_and_acceleration_are_those_of_the_path_in_a_bend_too(
     velocity, acceleration = derivative(target.position_enu_m), derivative(target.velocity_enu_m_s)
     assert velocity[INSIDE] == pytest.approx(target.velocity_enu_m_s[INSIDE], abs=1e-2)
     assert acceleration[INSIDE] == pytest.approx(target.acceleration_enu_m_s2[INSIDE], abs=1e-2)
+
+
+@pytest.mark.parametrize(
+    ("arm_m", "yaw_rad", "radius_m"),
+    [(0.5, 0.2, 4.0), (13.0, 0.2, 14.0), (0.5, None, 4.5), (13.0, None, 27.0), (0.0, None, 4.0)],
+)
+def test_vehicle_reaches_as_far_as_its_antenna_and_on_any_side_while_its_heading_is_unknown(
+    arm_m: float, yaw_rad: float | None, radius_m: float
+) -> None:
+    pad = replace(pad_at(), mounting=PadMounting(arm_m=arm_m), yaw_rad=yaw_rad)
+    assert CONFIG.sortie.vehicle_radius_m + CONFIG.sortie.keep_out_margin_m == 4.0
+    assert keep_out_of(pad, CONFIG).radius_m == pytest.approx(radius_m)

@@ -43,7 +43,7 @@ def test_way_home_is_no_faster_than_the_drone(offset_m: tuple[float, float, floa
 def test_way_ahead_to_a_station_is_no_faster_than_the_plan() -> None:
     station = Station(offset_m=(20.0, 0.0, 6.0))
     here = np.array([-9.0, -4.0, 6.0])
-    way = Way(station=station, end_m=here, place_m=here, at_ns=0)
+    way = Way(station=station, frame=station.frame, end_m=np.array(station.offset_m), place_m=here, at_ns=0)
     sortie = SortieMemory(is_out=True, station=station, way=way)
     limits = replace(LIMITS, speed_max_m_s=1.15 * 4.98)  # that may be carried on
     target = station_aim(sortie, PAD, situation(pad=PAD), limits, CONFIG).target

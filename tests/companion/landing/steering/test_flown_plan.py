@@ -20,6 +20,7 @@ from companion.landing.steering.flown_plan import (
 from companion.planning.guidance import PlanResult, PlanStatus, ReferenceState, Trajectory
 from companion.situation.phases import Phase
 from link.messages import Command
+from link.records import replace
 from tests.companion.world import CONFIG, PAD_HEIGHT_M, Flight, KnownVehicle
 
 
@@ -38,6 +39,8 @@ def test_carried_is_the_closed_form_of_constant_acceleration() -> None:
 heights, rates, ups = st.floats(-3.0, 20.0), st.floats(-4.0, 4.0), st.floats(-10.0, 10.0)
 durations = st.floats(0.1, 5.0)
 BRAKES_M_S2 = 1.0  # ArduPilot's WPNAV_ACCEL_Z
+LIMITS = CONFIG.limits.flight_limits()
+UNLIMITED = replace(LIMITS, climb_max_m_s=1e6, vertical_acceleration_max_m_s2=1e6)
 
 
 def _carried(duration_s: float) -> Shaping:
@@ -62,7 +65,9 @@ def _moving(height_m: float, rate_m_s: float, up_m_s2: float) -> ReferenceState:
 def test_model_that_is_carried_on_and_then_brakes_ends_above_the_lowest_height(
     height_m: float, rate_m_s: float, up_m_s2: float, duration_s: float
 ) -> None:
-    carried = extrapolate(limit_sink(_moving(height_m, rate_m_s, up_m_s2), 0.6, _carried(duration_s)), duration_s)
+    carried = extrapolate(
+        limit_sink(_moving(height_m, rate_m_s, up_m_s2), 0.6, _carried(duration_s), UNLIMITED), duration_s
+    )
     sinks_m_s = max(-float(carried.velocity_enu_m_s[2]), 0.0)
     assert carried.position_enu_m[2] - sinks_m_s**2 / (2.0 * BRAKES_M_S2) >= 0.6 - 1e-6
 
@@ -75,7 +80,7 @@ def test_model_that_ends_above_the_lowest_height_is_left_alone(
     carried = extrapolate(reference, duration_s)
     sinks_m_s = max(-float(carried.velocity_enu_m_s[2]), 0.0)
     lowest_m = float(carried.position_enu_m[2]) - sinks_m_s * (sinks_m_s / BRAKES_M_S2 + BRAKES_M_S2 / 5.0) / 2.0 - 1e-6
-    assert limit_sink(reference, lowest_m, _carried(duration_s)) is reference
+    assert limit_sink(reference, lowest_m, _carried(duration_s), UNLIMITED) is reference
 
 
 @given(heights, rates, ups, durations)
@@ -83,11 +88,22 @@ def test_nothing_but_the_acceleration_upwards_is_limited(
     height_m: float, rate_m_s: float, up_m_s2: float, duration_s: float
 ) -> None:
     reference = _moving(height_m, rate_m_s, up_m_s2)
-    limited = limit_sink(reference, 0.6, _carried(duration_s))
+    limited = limit_sink(reference, 0.6, _carried(duration_s), LIMITS)
     np.testing.assert_array_equal(limited.position_enu_m, reference.position_enu_m)
     np.testing.assert_array_equal(limited.velocity_enu_m_s, reference.velocity_enu_m_s)
     np.testing.assert_array_equal(limited.acceleration_enu_m_s2[:2], reference.acceleration_enu_m_s2[:2])
     assert limited.acceleration_enu_m_s2[2] >= up_m_s2
+
+
+@given(heights, st.floats(-4.0, LIMITS.climb_max_m_s), ups, st.floats(0.1, 3.0))
+def test_model_that_is_too_low_climbs_within_the_limits_however_short_it_is_carried_on(
+    height_m: float, rate_m_s: float, up_m_s2: float, duration_s: float
+) -> None:
+    reference = _moving(height_m, rate_m_s, up_m_s2)
+    limited = limit_sink(reference, 0.6, _carried(duration_s), LIMITS)
+    if limited is not reference:
+        assert limited.acceleration_enu_m_s2[2] <= LIMITS.vertical_acceleration_max_m_s2
+        assert extrapolate(limited, duration_s).velocity_enu_m_s[2] <= LIMITS.climb_max_m_s + 1e-9
 
 
 motions = st.tuples(rates, ups)
@@ -97,7 +113,8 @@ motions = st.tuples(rates, ups)
 def test_next_state_that_is_kept_up_may_be_carried_on(
     height_m: float, planned: tuple[float, float], before: tuple[float, float], duration_s: float
 ) -> None:
-    kept_up = keep_up(_moving(height_m, *planned), _moving(height_m + 0.01, *before), 0.6, _carried(duration_s), 0.02)
+    moved, start = _moving(height_m, *planned), _moving(height_m + 0.01, *before)
+    kept_up = keep_up(moved, start, 0.6, _carried(duration_s), limits=UNLIMITED, elapsed_s=0.02)
     carried = extrapolate(kept_up, duration_s)
     sinks_m_s = max(-float(carried.velocity_enu_m_s[2]), 0.0)
     assert carried.position_enu_m[2] - sinks_m_s**2 / (2.0 * BRAKES_M_S2) >= 0.6 - 1e-6
@@ -105,7 +122,7 @@ def test_next_state_that_is_kept_up_may_be_carried_on(
 
 def test_plan_of_an_autopilot_that_carries_nothing_on_is_flown_as_planned() -> None:
     sinking = _moving(0.1, -2.0, -3.0)
-    following = state_at(flown_plan(_plan(sinking), PERIOD_S, 0.6, None), PERIOD_S)
+    following = state_at(flown_plan(_plan(sinking), PERIOD_S, 0.6, None, LIMITS), PERIOD_S)
     np.testing.assert_array_equal(following.acceleration_enu_m_s2, sinking.acceleration_enu_m_s2)
 
 
@@ -145,7 +162,7 @@ def _plan(following: ReferenceState) -> PlanResult:
 @pytest.mark.parametrize("offset_s", [0.0, 0.013, PERIOD_S, 0.033, 0.13])
 def test_model_between_two_steps_is_where_its_plan_leads(offset_s: float) -> None:
     following = state_in_plan(_cubic(np.array([0.0, PERIOD_S, 0.1])), PERIOD_S)
-    model = state_at(flown_plan(_plan(following), PERIOD_S, 0.0, None), offset_s)
+    model = state_at(flown_plan(_plan(following), PERIOD_S, 0.0, None, LIMITS), offset_s)
     truth = _cubic(np.array([offset_s]))
     np.testing.assert_allclose(model.position_enu_m, truth.position_enu_m[0])
     np.testing.assert_allclose(model.velocity_enu_m_s, truth.velocity_enu_m_s[0])
@@ -154,14 +171,14 @@ def test_model_between_two_steps_is_where_its_plan_leads(offset_s: float) -> Non
 
 def test_model_after_one_period_is_the_next_state_of_a_law_that_plans_no_instant_there() -> None:
     following = _moving(3.0, -1.0, 0.5)
-    model = state_at(flown_plan(_plan(following), PERIOD_S, 0.0, None), PERIOD_S)
+    model = state_at(flown_plan(_plan(following), PERIOD_S, 0.0, None, LIMITS), PERIOD_S)
     np.testing.assert_array_equal(model.position_enu_m, following.position_enu_m)
     np.testing.assert_array_equal(model.acceleration_enu_m_s2, following.acceleration_enu_m_s2)
 
 
 def test_led_acceleration_is_that_of_the_plan_and_its_jerk_over_the_lag() -> None:
     following = state_in_plan(_cubic(np.array([0.0, PERIOD_S, 0.1])), PERIOD_S)
-    flown, offset_s = flown_plan(_plan(following), PERIOD_S, 0.0, None), 0.03
+    flown, offset_s = flown_plan(_plan(following), PERIOD_S, 0.0, None, LIMITS), 0.03
     cascade = Cascade(position_per_s=0.95, velocity_per_s=1.8, integral_per_s2=0.4, lead_s=0.0, attitude_lag_s=0.3)
     model = state_at(flown, offset_s)
     asked = lead_acceleration(model, flown, offset_s, cascade)
