@@ -12,6 +12,7 @@ import numpy as np
 from companion.config.companion import CompanionConfig
 from companion.core.data import STEP_MAX_S, Array, FlightLimits
 from companion.landing.decisions.conditions import is_fix_old
+from companion.landing.sortie.in_the_way import kept_station_m
 from companion.landing.sortie.over_vehicle import (
     WAY_SHARE,
     floor_beside,
@@ -71,7 +72,7 @@ def _way_now(
     station, way, keep_out = sortie.station, sortie.way, keep_out_now(pad, config)
     if station is None:
         raise ValueError("nothing is followed without a station")
-    end_m = keep_outside(np.array(station.offset_m), keep_out)
+    end_m = kept_station_m(station, sortie.ahead_rad, pad, limits, config)
     ahead = ahead_rad(station.frame, pad, sortie.ahead_rad)
     here_m = turned(here_enu_m, -ahead)
     place_m = way.place_m if way is not None and way.frame is station.frame and way.station == station else here_m
