@@ -11,6 +11,7 @@ from companion.config.companion import CompanionConfig
 from companion.runtime.node import CompanionNode
 from companion.situation.phases import Phase
 from link.messages import Command, CommandReply, Station, StationFrame
+from link.records import replace
 from scenarios.config import Scenario
 from scenarios.lockstep.lockstep import Lockstep
 from scenarios.simulation.noise import Seed
@@ -22,6 +23,7 @@ STATIONS = (
     Station(offset_m=(0.0, -7.0, 1.0), frame=StationFrame.COURSE),
 )
 """Behind and above, then low to the left, then low to the right: the way there leads round the vehicle."""
+_BESIDE_M = 1.0  # of the vehicle's corners a low station is kept
 HELD_S = 20.0
 """At each station."""
 _AWAY_M = 300.0
@@ -33,6 +35,19 @@ _LANDING_MAX_S = 240.0  # from the return to the end
 _LIFTED_NS = 200_000_000  # off the deck for so long: a rough road's shaking is over in less
 _TOUCHING = frozenset({Phase.DESCEND, Phase.TOUCHDOWN, Phase.SECURED})
 _OVER = frozenset({Phase.SECURED, Phase.PILOT})
+
+
+def stations_of(scenario: Scenario) -> tuple[Station, ...]:
+    """Return the stations that an operator orders who knows the vehicle: high over a large one, and clear of the road."""
+    vehicle, sortie = scenario.vehicle, scenario.system.companion.sortie
+    reach_m = 0.5 * math.hypot(vehicle.length_m, vehicle.width_m) + _BESIDE_M
+    high_m, lowest_m = STATIONS[0].offset_m[2], sortie.ground_clearance_m - vehicle.roof_height_m
+    stations = []
+    for station in STATIONS:
+        x_m, y_m, up_m = station.offset_m
+        up_m = max(up_m, lowest_m) if math.hypot(x_m, y_m) > reach_m else high_m
+        stations.append(replace(station, offset_m=(x_m, y_m, up_m)))
+    return tuple(stations)
 
 
 class SortieFlight(Lockstep):
@@ -49,6 +64,7 @@ class SortieFlight(Lockstep):
         self.scenario = scenario
         self.seed = seed
         self.return_from_m: float | None = None
+        self._stations = stations_of(scenario)
         self._on_deck_ns = 0
         self.orders: list[tuple[int, Station]] = []
         self.refused: dict[int, str] = {}
@@ -78,8 +94,8 @@ class SortieFlight(Lockstep):
                 self._mark("launch")
                 node.request(Command.LAUNCH)
                 self._next_ns = t_ns + _ASKS_AGAIN_NS
-            case Phase.FOLLOW if len(self.orders) < len(STATIONS):
-                station = STATIONS[len(self.orders)]
+            case Phase.FOLLOW if len(self.orders) < len(self._stations):
+                station = self._stations[len(self.orders)]
                 self.orders.append((t_ns, station))
                 node.request(Command.FOLLOW, station)
                 self._next_ns = t_ns + round(HELD_S * 1e9)
