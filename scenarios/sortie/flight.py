@@ -38,7 +38,7 @@ _OVER = frozenset({Phase.SECURED, Phase.PILOT})
 
 
 def stations_of(scenario: Scenario) -> tuple[Station, ...]:
-    """Return the stations that an operator orders who knows the vehicle: high over a large one, and clear of the road."""
+    """Return the stations of an operator who knows the vehicle: high over a large one, and clear of the road."""
     vehicle, sortie = scenario.vehicle, scenario.system.companion.sortie
     reach_m = 0.5 * math.hypot(vehicle.length_m, vehicle.width_m) + _BESIDE_M
     high_m, lowest_m = STATIONS[0].offset_m[2], sortie.ground_clearance_m - vehicle.roof_height_m
