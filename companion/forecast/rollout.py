@@ -2,11 +2,7 @@
 
 All horizontal motion is told as its deviation from the pad's forecast, in W. A sample's vehicle begins at the newest
 datum, off the forecast by what the estimate may err, keeps its acceleration until that is released, and may brake,
-depart or turn in. What is known of it is `delay` older, but for the error of the estimate: that of its place stays, and
-that of its velocity becomes another one, as likely, with each velocity that the filter learns. A change of its
-acceleration is believed with the filter's lag, and what is known is carried on to the present with it. Where no sensor
-tells how the vehicle turns, its antenna does, which passes T after the pad: to the side it drives with v - T a. When a
-bend begins or ends, one that trails moves the wrong way, and v is off by T (a - a believed) until a is known.
+depart or turn in. What the drone knows of it is late, and errs (`knowledge`).
 The virtual model follows what is known as the planner does near its target: within jerk and acceleration, on the way of
 least jerk that ends there at rest after the planner's shortest time W, or a longer one that takes no more jerk than
 there is; it is laid anew all the time,
@@ -27,6 +23,7 @@ import numpy as np
 
 from companion.core.data import GRAVITY_M_S2, Array
 from companion.forecast.compiled import compiled_kernel
+from companion.forecast.knowledge import believe, know, relearn
 from companion.forecast.samples import (
     CONTACT,
     DT_S,
@@ -43,54 +40,6 @@ from companion.forecast.samples import (
 )
 
 _LONGER, _LONGER_WAYS = 1.2, 7  # a way is tried by steps of a fifth, up to three times as long
-
-
-@compiled_kernel
-def relearn(error: Array, numbers: Array, left: float, std_m_s: float) -> None:
-    """Move the error (2, 2) of place and velocity by one step, with standard normal `numbers` (2,).
-
-    Of the velocity's there is a share `left`; the rest is made up for by what is new, so that its deviation stays.
-    """
-    new_m_s = std_m_s * math.sqrt(1.0 - left * left)
-    error[1, 0], error[1, 1] = left * error[1, 0] + new_m_s * numbers[0], left * error[1, 1] + new_m_s * numbers[1]
-
-
-@compiled_kernel
-def _believe(path: Array, at: int, left: tuple[float, float], drone: Follower, known: Array) -> tuple[float, float]:
-    """Move the acceleration that is known by one step, and return by how much the vehicle is taken to drive too slowly.
-
-    Args:
-        path: (b + m, 3, 2) of the vehicle.
-        at: where on it the vehicle was of which the newest datum tells.
-        left: of it, a unit vector.
-        drone: with how what is new is believed.
-        known: (3, 2) of the step before.
-    """
-    before, now = path[max(at - 1, 0)], path[at]
-    turned = (now[2, 0] - before[2, 0]) * left[0] + (now[2, 1] - before[2, 1]) * left[1]
-    shown = drone.trails_s * turned / DT_S  # by which the antenna's acceleration is less
-    share = min(DT_S / drone.believes_s, 1.0)
-    for i in range(2):
-        known[2, i] += (now[2, i] - shown * left[i] - known[2, i]) * share
-    off = (now[2, 0] - known[2, 0]) * left[0] + (now[2, 1] - known[2, 1]) * left[1]
-    return drone.trails_s * off * left[0], drone.trails_s * off * left[1]
-
-
-@compiled_kernel
-def _know(seen: Array, error: Array, slow: tuple[float, float], delay_s: float, known: Array) -> None:
-    """Write into `known` (3, 2) what is known of a vehicle's place and velocity off its forecast.
-
-    Args:
-        seen: (3, 2) the vehicle `delay_s` ago.
-        error: (2, 2) by which its place and velocity were more than the estimate's then.
-        slow: by which it is taken to drive too slowly, as `_believe` returns it.
-        delay_s: since then.
-        known: with the acceleration.
-    """
-    for i in range(2):
-        rate = seen[1, i] - error[1, i] - slow[i]
-        known[1, i] = rate + known[2, i] * delay_s
-        known[0, i] = seen[0, i] - error[0, i] + (rate + 0.5 * known[2, i] * delay_s) * delay_s
 
 
 @compiled_kernel
@@ -213,8 +162,8 @@ def _fly(path: Array, samples: Samples, sample: int, descent: Descent, out: Arra
     for k in range(steps):
         seen = max(before + k - late, 0.0)
         cx, cy = course.direction[k, 0], course.direction[k, 1]
-        slow = _believe(path, int(seen), (-cy, cx), drone, known)
-        _know(path[int(seen)], error, slow, (before + k - seen) * DT_S, known)
+        slow = believe(path, int(seen), (-cy, cx), drone, known)
+        know(path[int(seen)], error, slow, (before + k - seen) * DT_S, known)
         relearn(error, others[k], left, drone.error_std_m_s)
         height_m, sink_m_s = course.way_down[0, k - waited], -course.way_down[1, k - waited]
         expected[0] = course.along_m_s2[k] * cx - course.left_m_s2[k] * cy

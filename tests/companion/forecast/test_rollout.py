@@ -7,6 +7,7 @@ import pytest
 
 from companion.core.data import GRAVITY_M_S2
 from companion.forecast import rollout
+from companion.forecast.knowledge import relearn
 from companion.forecast.rollout import roll_out
 from companion.forecast.samples import ALONG, ASIDE, CONTACT, DT_S, ERROR, IN_S, SINK, SPEED, TILT
 from tests.companion.forecast.descents import HEIGHT_M, NEVER_S, RULES, SINK_M_S, descent, samples
@@ -80,7 +81,7 @@ def test_an_error_of_the_velocity_keeps_its_deviation_while_it_becomes_another_o
     generator, relearns_hz, std_m_s = np.random.default_rng(6), 2.5, 0.2
     error, seen = np.array([[0.1, 0.1], [0.9, -0.9]]), []
     for _ in range(20_000):
-        rollout.relearn(error, generator.standard_normal(2), math.exp(-relearns_hz * DT_S), std_m_s)
+        relearn(error, generator.standard_normal(2), math.exp(-relearns_hz * DT_S), std_m_s)
         seen.append(error[1].copy())
     later = round(1.0 / relearns_hz / DT_S)
     errors = np.array(seen[100:])
@@ -147,8 +148,8 @@ def test_machine_code_is_its_python(monkeypatch: pytest.MonkeyPatch) -> None:
     for name in (
         "drive",
         "relearn",
-        "_believe",
-        "_know",
+        "believe",
+        "know",
         "_waits",
         "_breaks_off",
         "steer",
