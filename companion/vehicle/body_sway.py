@@ -19,11 +19,10 @@ from companion.config.estimation import ImmConfig, SwayConfig
 from companion.core.data import Array
 from companion.vehicle.deck_motion import MEMORY_S
 from companion.vehicle.imm_mixing import Modes
-from companion.vehicle.imm_swing import PITCH_RATE, ROLL_RATE
+from companion.vehicle.imm_swing import HEAVE_RATE, PITCH_RATE, ROLL_RATE
 
 _GAP_MAX_S = 1.0  # of velocities, after which the filter knows of no sway any more
 _SHOWS_MIN = 0.1  # of a wrong variance; what shows less is all chance
-HEAVE_RATE = 10  # in the state
 _RATE_STDS_MIN = (0.003, 0.003, 0.01)  # rad/s and m/s: less moves an antenna 4 m up by a centimetre a second
 
 

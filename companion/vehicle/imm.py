@@ -145,11 +145,8 @@ class ImmModel:
     def describe(self, state: ImmState, t_ns: int) -> VehicleEstimate:
         """Return the mixture of the modes; its parts are of the pad, on a body that stands upright."""
         motion, told_of, known_variance = self._motion(state), told_modes(state), self._known_variance
-        x, told, covariance, *_, heading_variance = forecasts.describe_modes(told_of, motion, known_variance)
-        at_pad = forecasts.pad_modes(upright_modes(state), motion, known_variance)
-        without_arm = motion.copy()
-        without_arm[5:9] = 0.0
-        _, pad, _, pads, pads_covariance, _ = forecasts.describe_modes(at_pad, without_arm, known_variance)
+        x, told, covariance, heading_variance = forecasts.describe_modes(told_of, motion, known_variance)
+        pad_off, pad_covariance = forecasts.describe_pad(upright_modes(state), motion, known_variance)
         known = heading_variance < known_variance
         return VehicleEstimate(
             t_ns=t_ns,
@@ -159,7 +156,7 @@ class ImmModel:
             covariance=0.5 * (covariance + covariance.T),
             yaw_rad=wrapped(float(x[HEADING])) if known else None,
             yaw_rate_rad_s=float(x[CURVATURE] * math.hypot(x[2], x[3])) if known else None,
-            mixture=Mixture(weight=state.modes[2], off=pads - pad, covariance=pads_covariance),
+            mixture=Mixture(weight=state.modes[2], off=pad_off, covariance=pad_covariance),
         )
 
     def forecast(self, state: ImmState, t_ns: int, offset_s: Array) -> Forecast:

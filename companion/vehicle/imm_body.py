@@ -9,12 +9,12 @@ from companion.vehicle.deck_motion import DeckMotion, first_motion, learn
 from companion.vehicle.imm_mixing import Modes
 from companion.vehicle.imm_numbers import Numbers, swing_of
 from companion.vehicle.imm_state import DECK, PLACE, TILT, ImmState, has_settled
-from companion.vehicle.imm_swing import ROLL, ROLL_RATE, SIZE, antenna_swing
+from companion.vehicle.imm_swing import HEAVE_RATE, ROLL, ROLL_RATE, SIZE, antenna_swing
 from link.records import replace
 
 MOTIONS = frozenset({Quantity.POSITION, Quantity.VELOCITY})
-SWINGING = np.array([10, 11, *TILT])
-_RATE = np.array([2, 3, 10])  # what the velocity of the antenna has beside its swing
+SWINGING = np.array([HEAVE_RATE, HEAVE_RATE + 1, *TILT])
+_RATE = np.array([2, 3, HEAVE_RATE])  # what the velocity of the antenna has beside its swing
 
 
 def opened_body(

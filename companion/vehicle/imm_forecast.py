@@ -123,21 +123,8 @@ def forecast_modes(
 
 
 @compiled_kernel
-def pad_modes(modes: Modes, motion: Array, known_variance: float) -> Modes:
-    """Return the filter with the pad's place for the antenna's; without a known heading they are the same."""
-    lever = with_direction(motion, modes, known_variance)[5:8]
-    means, covariances, weights = modes
-    at_pad, known = means.copy(), covariances.copy()
-    for j in range(len(weights)):
-        at_pad[j], known[j] = shifted(means[j], covariances[j], lever, 1.0)
-    return at_pad, known, weights
-
-
-@compiled_kernel
-def describe_modes(
-    modes: Modes, motion: Array, known_variance: float
-) -> tuple[Array, Array, Array, Array, Array, float]:
-    """Return the mixture now, and its parts.
+def describe_modes(modes: Modes, motion: Array, known_variance: float) -> tuple[Array, Array, Array, float]:
+    """Return the mixture now.
 
     Args:
         modes: the filter.
@@ -145,16 +132,38 @@ def describe_modes(
         known_variance: as above.
 
     Returns:
-        The mean (25,); position, velocity and acceleration (9,) and their covariance (9, 9); those of each mode, (n, 9)
-        and (n, 9, 9); and the variance of the heading, rad^2.
+        The mean (25,); position, velocity and acceleration (9,) and their covariance (9, 9); and the variance of the
+        heading, rad^2.
     """
     directed = with_direction(motion, modes, known_variance)
+    x, P = combine(modes[0], modes[1], modes[2])
+    told = np.empty((1, 9))
+    told[:, :3], told[:, 3:6], told[:, 6:] = kinematics(x.reshape(1, SIZE), directed)
+    return x, told[0], carried_through(kinematics_jacobian(x, directed), P), heading_variance(modes)
+
+
+@compiled_kernel
+def describe_pad(modes: Modes, motion: Array, known_variance: float) -> tuple[Array, Array]:
+    """Return how far each mode has the pad off the mixture, (n, 9), and its covariance, (n, 9, 9).
+
+    Place, velocity and acceleration are of the pad's centre; without a known heading that is where the antenna is.
+
+    Args:
+        modes: the filter.
+        motion: its numbers.
+        known_variance: as above.
+    """
+    lever = with_direction(motion, modes, known_variance)[5:8]
     means, covariances, weights = modes
-    x, P = combine(means, covariances, weights)
+    at_pad, known = means.copy(), covariances.copy()
+    for j in range(len(weights)):
+        at_pad[j], known[j] = shifted(means[j], covariances[j], lever, 1.0)
+    x, _ = combine(at_pad, known, weights)
+    without_arm = motion.copy()
+    without_arm[5:9] = 0.0
     n = len(weights)
-    told, spread = np.empty((n + 1, 9)), np.empty((n + 1, 9, 9))
-    told[:, :3], told[:, 3:6], told[:, 6:] = kinematics(np.concatenate((x.reshape(1, SIZE), means)), directed)
-    spread[0] = carried_through(kinematics_jacobian(x, directed), P)
+    told, spread = np.empty((n + 1, 9)), np.empty((n, 9, 9))
+    told[:, :3], told[:, 3:6], told[:, 6:] = kinematics(np.concatenate((x.reshape(1, SIZE), at_pad)), without_arm)
     for j in range(n):
-        spread[j + 1] = carried_through(kinematics_jacobian(means[j], directed), covariances[j])
-    return x, told[0], spread[0], told[1:], spread[1:], heading_variance(modes)
+        spread[j] = carried_through(kinematics_jacobian(at_pad[j], without_arm), known[j])
+    return told[1:] - told[0], spread

@@ -16,6 +16,7 @@ from companion.vehicle.compiled import compiled_kernel
 from companion.vehicle.lever import tilted_arm, turned
 from companion.vehicle.small_matrices import carried_through, times, white_jerk
 
+HEAVE_RATE = 10
 ROLL, ROLL_RATE, PITCH, PITCH_RATE, MOUNT = 18, 19, 20, 21, 22
 OWN_RATE = 24  # the first state that is none of the deck's
 SIZE = 25

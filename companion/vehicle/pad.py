@@ -40,7 +40,7 @@ class PadMounting(Struct, frozen=True, kw_only=True):
     Attributes:
         is_afloat: on the water.
         arm_m: from the antenna to its centre, horizontally; what is not 0 needs a heading.
-        ahead_m: of the antenna, along V; negative for a pad behind it.
+        ahead_m: by how much the pad's centre is ahead of the antenna, along V.
     """
 
     is_afloat: bool = False

@@ -7,13 +7,13 @@ import pytest
 
 from companion.config.estimation import EstimatorConfig, ImmConfig
 from companion.core.data import Array, Measurement, Quantity
-from companion.vehicle.body_sway import HEAVE_RATE, BodySway, first_sway, learn_sway
+from companion.vehicle.body_sway import BodySway, first_sway, learn_sway
 from companion.vehicle.estimator import BufferedEstimator, DelayBuffer
 from companion.vehicle.imm import ImmModel
 from companion.vehicle.imm_mixing import Modes
 from companion.vehicle.imm_numbers import Deck
 from companion.vehicle.imm_state import ImmState
-from companion.vehicle.imm_swing import PITCH_RATE, ROLL_RATE, SIZE
+from companion.vehicle.imm_swing import HEAVE_RATE, PITCH_RATE, ROLL_RATE, SIZE
 from link.records import replace
 from tests.companion.vehicle.drives import TRUTH_STEP_S, Drive, Sensors, drive, sense
 from tests.companion.vehicle.rides import now_ns

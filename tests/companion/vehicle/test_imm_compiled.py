@@ -53,6 +53,7 @@ def calls(seed: int) -> list[Call]:
         found += [
             ("imm_mixing", "predict_modes", (modes, 0.23, NOISES, BEGINS_AFTER_S, MOTION, known)),
             ("imm_forecast", "describe_modes", (modes, MOTION, known)),
+            ("imm_forecast", "describe_pad", (modes, MOTION, known)),
             ("imm_forecast", "forecast_modes", (modes, OFFSET_S, NOISES, MOTION, known)),
         ]
     for kind, m in COMPONENTS.items():
