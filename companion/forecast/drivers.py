@@ -62,7 +62,7 @@ class Drivers(Struct, frozen=True, kw_only=True):
         """
         if abs(left_m_s2) < _ENDS_M_S2:
             return 0.0
-        return 1.0 / (_RIGHT_ANGLE_RAD * speed_m_s / abs(left_m_s2) + self.bends_s)
+        return 1.0 / (_RIGHT_ANGLE_RAD * max(speed_m_s, _STANDS_M_S) / abs(left_m_s2) + self.bends_s)
 
     def seen_share(self, kind: int) -> float:
         """Return which share of the next events of a kind is taken to be as hard as those seen."""

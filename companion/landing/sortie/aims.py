@@ -20,6 +20,7 @@ from companion.landing.sortie.over_vehicle import (
     keep_out_of,
     offset_now,
     over_vehicle,
+    place_speed_m_s,
     turns_too_fast,
     way_speed_m_s,
 )
@@ -31,7 +32,7 @@ from companion.planning.guidance import ReferenceState
 from companion.situation.phases import STATION_PHASES, Phase
 from companion.situation.situation import Situation
 from companion.sortie.memory import SortieMemory, Way
-from companion.sortie.station import KeepOut, ahead_rad, is_clear, keep_outside, turn_rates_rad_s, turned, way_to
+from companion.sortie.station import KeepOut, ahead_rad, is_clear, keep_outside, turned, way_to
 from companion.vehicle.pad import PadPath
 from link.frames.geodesy import local_from_geodetic
 from link.messages import StationFrame
@@ -107,14 +108,12 @@ def _ends_at(
 
 
 def station_speed_m_s(sortie: SortieMemory, s: Situation) -> float:
-    """Return how fast over ground the station itself moves: outside in a bend it is faster than the vehicle."""
+    """Return how fast over ground the station itself moves."""
     if sortie.station is None or s.pad is None:
         return 0.0
     frame = sortie.station.frame
-    x, y, _ = turned(np.array(sortie.station.offset_m), ahead_rad(frame, s.pad, sortie.ahead_rad)).tolist()
-    east_m_s, north_m_s = s.pad.velocity_enu_m_s[0, :2].tolist()
-    rate_rad_s = float(turn_rates_rad_s(frame, s.pad)[0])
-    return math.hypot(east_m_s - rate_rad_s * y, north_m_s + rate_rad_s * x)
+    ahead = ahead_rad(frame, s.pad, sortie.ahead_rad)
+    return place_speed_m_s(np.array(sortie.station.offset_m), frame, ahead, s.pad)
 
 
 _CLIMB_FIRST_M = 1.0  # a drone that is lower than this under its place climbs before it flies there

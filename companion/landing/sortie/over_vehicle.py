@@ -96,12 +96,17 @@ def turns_too_fast(offset_m: Array, frame: StationFrame, ahead: float, pad: PadP
 
     Where the vehicle turns at the rate w, the place at the arm r moves by w x r and is drawn in by w^2 r beside it.
     """
+    rate_rad_s, arm_m = float(turn_rates_rad_s(frame, pad)[0]), math.hypot(*offset_m[:2].tolist())
+    is_faster = place_speed_m_s(offset_m, frame, ahead, pad) > max(limits.speed_max_m_s, pad.ground_speed_m_s)
+    return is_faster or rate_rad_s**2 * arm_m > limits.acceleration_max_m_s2
+
+
+def place_speed_m_s(offset_m: Array, frame: StationFrame, ahead: float, pad: PadPath) -> float:
+    """Return how fast over ground a place (3,) moves that turns with the vehicle: outside in a bend it is faster."""
     rate_rad_s = float(turn_rates_rad_s(frame, pad)[0])
     x, y, _ = turned(offset_m, ahead).tolist()
     east_m_s, north_m_s = pad.velocity_enu_m_s[0, :2].tolist()
-    speed_m_s = math.hypot(east_m_s - rate_rad_s * y, north_m_s + rate_rad_s * x)
-    is_faster = speed_m_s > max(limits.speed_max_m_s, math.hypot(east_m_s, north_m_s))
-    return is_faster or rate_rad_s**2 * math.hypot(x, y) > limits.acceleration_max_m_s2
+    return math.hypot(east_m_s - rate_rad_s * y, north_m_s + rate_rad_s * x)
 
 
 def offset_now(pad: PadPath, reference: ReferenceState, s: Situation) -> Array:

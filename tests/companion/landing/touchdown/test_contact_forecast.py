@@ -58,3 +58,4 @@ def test_descent_of_little_risk_begins(monkeypatch: pytest.MonkeyPatch) -> None:
     flight = reached(Phase.DESCEND)
     monkeypatch.setattr(contact_forecast, "forecast_contact", lambda *_: forecast_of(0.5 * RISK, 2.0))
     flight.run_until(Phase.TOUCHDOWN)
+    assert flight.history[-2:] == [Phase.DESCEND, Phase.TOUCHDOWN]
