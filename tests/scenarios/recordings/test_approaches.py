@@ -8,11 +8,13 @@ import pytest
 from companion.core.reasons import Reason
 from companion.situation.phases import Phase
 from link.messages import BodyTruth, LandingStatus, RotorTruth
+from link.records import replace
 from scenarios.commands.run_lines import approach_lines
 from scenarios.recordings.approaches import Approach, approaches_of
 from scenarios.recordings.reason_counts import abort_reasons, add_counts, counts_of, counts_text, reasons_in
 from scenarios.recordings.recording import TIME_LIMIT, Recording
 from scenarios.scoring.truth_log import TruthLog, truth_log
+from tests.scenarios.statuses import status_of
 
 START_NS = 1_800_000_000_000_000_000
 ROOF_M = 1.5
@@ -51,18 +53,8 @@ def body(t_s: float, position: tuple[float, float, float]) -> BodyTruth:
 
 
 def status(t_s: float, phase: Phase, reason: Reason) -> LandingStatus:
-    return LandingStatus(
-        stamp_ns=at_ns(t_s),
-        phase=phase.value,
-        reason=f"because of {reason.name}",
-        reason_code=reason.name,
-        relative_position_enu_m=None,
-        relative_velocity_enu_m_s=None,
-        height_above_pad_m=None,
-        time_to_contact_s=None,
-        armed=True,
-        fix_age_s=None,
-    )
+    said = status_of(at_ns(t_s), phase)
+    return replace(said, reason=f"because of {reason.name}", reason_code=reason.name)
 
 
 def approaches(*steps: Step) -> list[Approach]:

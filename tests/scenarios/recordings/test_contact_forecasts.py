@@ -7,8 +7,10 @@ import pytest
 from companion.config.descent import DescentConfig
 from companion.situation.phases import Phase
 from link.messages import LandingStatus
+from link.records import replace
 from scenarios.recordings.contact_forecasts import forecast_columns
 from tests.companion.facts import forecast_of
+from tests.scenarios.statuses import status_of
 
 START_NS = 1_767_225_600_000_000_000
 DESCENT = DescentConfig()
@@ -23,18 +25,9 @@ LANDED = {
 
 
 def _status(at_s: float, height_m: float, phase: Phase = Phase.DESCEND, unsafe: float = 0.01) -> LandingStatus:
-    return LandingStatus(
-        stamp_ns=START_NS + round(at_s * 1e9),
-        phase=phase.value,
-        reason="",
-        relative_position_enu_m=None,
-        relative_velocity_enu_m_s=None,
-        height_above_pad_m=height_m,
-        time_to_contact_s=None,
-        armed=True,
-        fix_age_s=0.1,
-        contact_forecast=forecast_of(unsafe, in_s=0.8) if phase is Phase.DESCEND else None,
-    )
+    said = status_of(START_NS + round(at_s * 1e9), phase)
+    contact = forecast_of(unsafe, in_s=0.8) if phase is Phase.DESCEND else None
+    return replace(said, height_above_pad_m=height_m, fix_age_s=0.1, contact_forecast=contact)
 
 
 FLIGHT = [

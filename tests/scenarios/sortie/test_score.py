@@ -4,11 +4,14 @@ import math
 
 import pytest
 
-from link.messages import BodyTruth, CommandReply, LandingStatus, Station, StationFrame, Vector3
+from companion.situation.phases import Phase
+from link.messages import BodyTruth, CommandReply, Station, StationFrame, Vector3
+from link.records import replace
 from scenarios.sortie.flight import HELD_S, SortieFlight
 from scenarios.sortie.score import SETTLING_S, score_sortie
 from scenarios.sortie.task import sortie_scenario
 from sim_autopilot.physics.contact import GEAR_HEIGHT_M
+from tests.scenarios.statuses import status_of
 
 ORDERED = Station(offset_m=(2.0, 6.0, 1.0), frame=StationFrame.VEHICLE)
 KEPT_M = (2.5, 7.5, 1.8)
@@ -26,21 +29,6 @@ def body(t_ns: int, position_enu_m: Vector3) -> BodyTruth:
     )
 
 
-def status(t_ns: int, station_offset_m: Vector3 | None) -> LandingStatus:
-    return LandingStatus(
-        stamp_ns=t_ns,
-        phase="follow",
-        reason="",
-        relative_position_enu_m=None,
-        relative_velocity_enu_m_s=None,
-        height_above_pad_m=None,
-        time_to_contact_s=None,
-        armed=True,
-        fix_age_s=None,
-        station_offset_m=station_offset_m,
-    )
-
-
 class _Flown(SortieFlight):
     """A drone that stays `OFF_M` above the station that it keeps, from the order on."""
 
@@ -52,7 +40,7 @@ class _Flown(SortieFlight):
         for t_ns in range(0, round(HELD_S * 1e9), 100_000_000):
             self.recording.add(body(t_ns, (ahead_m, left_m, up_m)))
             self.recording.add(body(t_ns, (0.0, 0.0, 0.0)), is_drone=False)
-            self.recording.add(status(t_ns, kept_m))
+            self.recording.add(replace(status_of(t_ns, Phase.FOLLOW), station_offset_m=kept_m))
         self.times_ns["hold"] = round(HELD_S * 1e9)
 
     def answer(self, *, accepted: bool) -> None:
