@@ -1,5 +1,6 @@
 """Recordings that ground stations read: before each frame, the time in microseconds as 8 bytes, big-endian."""
 
+import os
 import struct
 from pathlib import Path
 from types import TracebackType
@@ -7,6 +8,7 @@ from typing import NamedTuple, Self
 
 from link.errors import UserError
 from link.recording.file_names import free_path
+from link.units import NS_PER_S
 
 _TIME = struct.Struct(">Q")
 
@@ -36,9 +38,10 @@ class TlogWriter:
         """
         self._file.write(_TIME.pack(t_ns_utc // 1000) + frame)
 
-    def flush(self) -> None:
-        """Hands what was written so far to the operating system."""
+    def sync(self) -> None:
+        """Has what was written so far on the disk itself, where a power failure leaves it."""
         self._file.flush()
+        os.fdatasync(self._file.fileno())
 
     def close(self) -> None:
         """Ends the recording."""
@@ -61,7 +64,7 @@ class TlogFrames(NamedTuple):
 
 
 class TlogSink:
-    """A recorder's sink that writes a recording of frames.
+    """A recorder's sink that writes a recording of frames; a power failure costs the last second.
 
     Args:
         path: of the file, as `TlogWriter` takes it.
@@ -72,6 +75,7 @@ class TlogSink:
 
     def __init__(self, path: Path) -> None:
         self._writer = TlogWriter(path)
+        self._synced_ns = 0
 
     def write(self, record: TlogFrames) -> None:
         """Writes frames.
@@ -81,6 +85,9 @@ class TlogSink:
         """
         for frame in record.frames:
             self._writer.write(frame, record.t_ns_utc)
+        if abs(record.t_ns_utc - self._synced_ns) >= NS_PER_S:  # UTC may be set back
+            self._writer.sync()
+            self._synced_ns = record.t_ns_utc
 
     def close(self) -> None:
         """Ends the recording.

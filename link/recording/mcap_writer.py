@@ -4,6 +4,7 @@ What earlier starts have recorded there is never overwritten; it counts, and is 
 Each file is complete in itself: it repeats the metadata, the attachments and the schemas.
 """
 
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import partial
@@ -77,6 +78,10 @@ class _WholeRecords(RawIOBase):
         self.size += len(data)
         return len(data)
 
+    def sync(self) -> None:
+        """Have what was written on the disk itself, where a power failure leaves it."""
+        os.fdatasync(self._file.fileno())
+
     def close(self) -> None:
         """Close the file."""
         self._file.close()
@@ -129,7 +134,7 @@ class McapFile:
         """Add a message that was recorded at `log_ns`.
 
         Raises:
-            OSError: what was added since the last chunk is lost, and the file is to be abandoned.
+            OSError: what was added since the last chunk may be lost, and the file is to be abandoned.
         """
         topic = message.topic
         channel = self._channels.get(topic)
@@ -143,6 +148,7 @@ class McapFile:
         finally:  # an index that fails comes after its chunk
             if self.size > size:
                 self.pending = 0
+                self._file.sync()
 
     def finish(self) -> None:
         """Complete the file.

@@ -1,3 +1,4 @@
+import os
 import struct
 from pathlib import Path
 
@@ -8,7 +9,7 @@ from link.errors import UserError
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import mavlink
 from link.mavlink.peer import companion_heartbeat
-from link.mavlink.tlog import TlogWriter
+from link.mavlink.tlog import TlogFrames, TlogSink, TlogWriter
 from tests.link.mavlink.tlog_frames import frames_of
 
 T_NS = 1_795_220_114_620_015_999
@@ -67,3 +68,15 @@ def test_frames_are_read_as_they_were_written_and_a_cut_end_is_left_out(tmp_path
 def test_what_is_no_recording_is_refused_with_the_place() -> None:
     with pytest.raises(ValueError, match="no frame at byte 8"):
         list(frames_of(bytes(8) + b"\xfd\x03\x7f" + bytes(20)))
+
+
+def test_a_power_failure_costs_the_last_second(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    on_disk: list[int] = []
+    monkeypatch.setattr(os, "fdatasync", lambda number: on_disk.append(os.fstat(number).st_size))
+    sink = TlogSink(tmp_path / "run.tlog")
+    for k in range(25):
+        sink.write(TlogFrames([b"frame", b"answer"], T_NS + k * 100_000_000))
+    sink.write(TlogFrames([b"frame", b"answer"], T_NS - 3_600_000_000_000))
+    sink.close()
+    a_record = 2 * 8 + len(b"frame") + len(b"answer")
+    assert on_disk == [a_record, 11 * a_record, 21 * a_record, 26 * a_record]

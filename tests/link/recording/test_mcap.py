@@ -1,5 +1,6 @@
 """Recordings as files: read by an independent reader, cut off anywhere, rotated, and on a disk that is full."""
 
+import os
 from pathlib import Path
 
 import pytest
@@ -149,3 +150,16 @@ def test_folder_that_cannot_be_made_is_told(tmp_path: Path) -> None:
     tmp_path.joinpath("file").write_text("", encoding="utf-8")
     with pytest.raises(UserError, match="choose another place"):
         McapRecording(RecordingSpec(folder=tmp_path / "file" / "below", stem="test"))
+
+
+def test_power_failure_costs_what_is_not_in_a_chunk_yet(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    on_disk: list[int] = []
+    monkeypatch.setattr(os, "fdatasync", lambda number: on_disk.append(os.fstat(number).st_size))
+    file = mcap_writer.McapFile(tmp_path / "test_000.mcap", RecordingSpec(folder=tmp_path, stem="test"))
+    for index in range(5_000):
+        before = len(on_disk)
+        file.add(_setpoint(index), index)
+        assert (file.pending == 0) == (len(on_disk) > before)
+        assert file.pending or on_disk[-1] == file.size
+    file.finish()
+    assert len(on_disk) > 1
