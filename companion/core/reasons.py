@@ -136,7 +136,7 @@ class Reason(Enum):
         "the autopilot reports a failsafe (battery, radio, ground station): end its cause, see its own messages"
     )
     MEASUREMENTS_REJECTED = (
-        "vehicle data contradict themselves: {:.0f} % of the last 10 s' measurements were rejected: see the axes of "
+        "vehicle data contradict themselves: {:.0f} % of one quantity in the last 10 s were rejected: see the axes of "
         "its velocity, its stamps, its receiver"
     )
     BATTERY_LOW = "battery at {:.0f} %, limits.battery_min_share is {:.0f} %: charge it"

@@ -138,22 +138,23 @@ def update_sightings(
     before: SightingWatch, health: BufferHealth, monotonic_ns: int, config: CompanionConfig
 ) -> SightingWatch:
     """Return the watch with what the estimator has counted by now; one that was restarted is counted again."""
-    accepted, rejected = (now - then for now, then in zip(health.sightings, before.counted, strict=True))
+    counted = health.counts(Quantity.PAD)
+    accepted, rejected = (now - then for now, then in zip(counted, before.counted, strict=True))
     if accepted < 0 or rejected < 0:
-        return SightingWatch(counted=health.sightings, moves=health.moves_to_sightings)
+        return SightingWatch(counted=counted, moves=health.moves_to_sightings)
     is_step = before.is_confirmed and health.moves_to_sightings > before.moves
     before = replace(before, moves=health.moves_to_sightings, has_stepped=before.has_stepped or is_step)
     if rejected > config.integrity.rejected_share_max * (accepted + rejected):
-        return replace(before, counted=health.sightings, are_mixed=True, agreeing=0, since_ns=None)
+        return replace(before, counted=counted, are_mixed=True, agreeing=0, since_ns=None)
     if accepted == 0:
-        return replace(before, counted=health.sightings, are_mixed=False)
+        return replace(before, counted=counted, are_mixed=False)
     since_ns = monotonic_ns if before.since_ns is None else before.since_ns
     agreeing = before.agreeing + accepted
     is_long = before.was_confirmed or (monotonic_ns - since_ns) * 1e-9 >= _CONFIRMING_S
     are_enough = agreeing >= _CONFIRMING_MIN and is_long
     return replace(
         before,
-        counted=health.sightings,
+        counted=counted,
         are_mixed=False,
         agreeing=agreeing,
         since_ns=since_ns,

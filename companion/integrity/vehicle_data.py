@@ -1,6 +1,7 @@
 """Whether the vehicle's data contradict each other, or head where it does not go; pure.
 
-How many of them the estimator has lately rejected tells the first.
+How many of one quantity the estimator has lately rejected tells the first: an inertial unit, which tells most and fits
+always, would hide fixes that do not. Sightings of the pad have a watch of their own.
 A velocity with its axes exchanged, or stamps that jump, make the estimator reject what it has just believed, again and
 again: its estimate swings between the two. Outages and brakes have a few rejected, one after the other.
 
@@ -12,15 +13,17 @@ that is believed of a vehicle whose heading has agreed with its course before, a
 
 import math
 from enum import Enum
+from operator import add, gt
 
 from msgspec import Struct
 
 from companion.config.companion import CompanionConfig
 from companion.config.integrity import ReceiverFrames
-from companion.core.data import STEP_MAX_S
+from companion.core.data import STEP_MAX_S, Quantity
 from companion.core.reasons import Cause, Reason
 from companion.situation.situation import Situation
 from companion.vehicle.estimator import BufferHealth
+from companion.vehicle.filter_step import OF_DRONE, RANK
 from companion.vehicle.pad import PadPath
 from companion.vehicle.pad_reach import cone_radius_at_pad_m
 from link.records import replace
@@ -31,8 +34,10 @@ _SAMPLES_KEPT = (
 )
 _MEASUREMENTS_MIN = 20  # measurements that something is said of
 
-Sample = tuple[int, int, int]
-"""Monotonic ns, and how many measurements were accepted and rejected by then."""
+_JUDGED = tuple(RANK[one] for one in Quantity if one is not Quantity.PAD and one not in OF_DRONE)
+
+Sample = tuple[int, tuple[int, ...], tuple[int, ...]]
+"""Monotonic ns, and how many of each of `QUANTITIES` had come and were rejected by then."""
 
 
 class Contradictions(Struct, frozen=True, kw_only=True):
@@ -40,7 +45,7 @@ class Contradictions(Struct, frozen=True, kw_only=True):
 
     Attributes:
         samples: oldest first.
-        rejected_share: of those that came, 0 to 1.
+        rejected_share: of those of one quantity that came, the largest; of all together, where that is more, 0 to 1.
     """
 
     samples: tuple[Sample, ...] = ()
@@ -53,13 +58,16 @@ class Contradictions(Struct, frozen=True, kw_only=True):
 
 def update_contradictions(before: Contradictions, health: BufferHealth, t_ns: int) -> Contradictions:
     """Return the contradictions with what the estimator tells at `t_ns`; one that was restarted is counted again."""
-    now = (t_ns, health.fused, health.gated)
-    if before.samples and before.samples[-1][1] > health.fused:
+    arrived = tuple(map(add, health.accepted, health.rejected))
+    now = (t_ns, arrived, health.rejected)
+    if before.samples and any(map(gt, before.samples[-1][1], arrived)):
         return Contradictions(samples=(now,))
     samples = (*before.samples, now)[-_SAMPLES_KEPT - 1 :]
-    accepted, rejected = health.fused - samples[0][1], health.gated - samples[0][2]
-    arrived = accepted + rejected
-    return Contradictions(samples=samples, rejected_share=rejected / arrived if arrived >= _MEASUREMENTS_MIN else 0.0)
+    _, arrived_then, rejected_then = samples[0]
+    counts = [(arrived[k] - arrived_then[k], health.rejected[k] - rejected_then[k]) for k in _JUDGED]
+    together = (sum(came for came, _ in counts), sum(bad for _, bad in counts))
+    shares = (bad / came for came, bad in (*counts, together) if came >= _MEASUREMENTS_MIN)
+    return Contradictions(samples=samples, rejected_share=max(shares, default=0.0))
 
 
 def contradicts_itself(s: Situation, c: CompanionConfig) -> bool:

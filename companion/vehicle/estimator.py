@@ -146,26 +146,29 @@ class BufferHealth(Struct, frozen=True, kw_only=True):
     """What became of the measurements, and whether they agree with the filter.
 
     Attributes:
-        fused: accepted, of what vehicle and detector tell.
-        gated: rejected as outliers, likewise.
+        accepted: of each of `QUANTITIES`.
+        rejected: as outliers, likewise; those that the filter was opened to among them.
         late: dropped, older than the buffer.
         recoveries: times the filter was opened to data it had rejected for too long.
         nis_per_dof: mean over the whole run, 1 for a consistent filter; None before the second measurement.
         nis_dof: degrees of freedom that it is the mean of.
-        sightings: of the pad, accepted and rejected.
         moves_to_sightings: times the pad was moved to where sightings had it that were rejected for too long.
         place_step: times fixes that went on moved the vehicle where it was not expected, and how far the last did, m.
     """
 
-    fused: int
-    gated: int
+    accepted: tuple[int, ...]
+    rejected: tuple[int, ...]
     late: int
     recoveries: int
     nis_per_dof: float | None
     nis_dof: int
-    sightings: tuple[int, int] = (0, 0)
     moves_to_sightings: int = 0
     place_step: tuple[int, float] = (0, 0.0)
+
+    def counts(self, quantity: Quantity) -> tuple[int, int]:
+        """Return how many of `quantity` were accepted and rejected."""
+        rank = RANK[quantity]
+        return self.accepted[rank], self.rejected[rank]
 
 
 class BufferedEstimator(Struct, Generic[S], frozen=True, kw_only=True):
@@ -200,13 +203,12 @@ class BufferedEstimator(Struct, Generic[S], frozen=True, kw_only=True):
         """Return the counters and the consistency of the memory."""
         tally = Tally() if memory is None else memory.newest.tally
         return BufferHealth(
-            fused=tally.fused,
-            gated=tally.gated,
+            accepted=tally.accepted,
+            rejected=tally.rejected,
             late=0 if memory is None else memory.late,
             recoveries=tally.recoveries,
             nis_per_dof=tally.nis_sum / tally.nis_dof if tally.nis_dof else None,
             nis_dof=tally.nis_dof,
-            sightings=tally.sightings,
             moves_to_sightings=tally.moves_to_sightings,
             place_step=tally.place_step,
         )

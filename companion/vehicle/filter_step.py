@@ -44,10 +44,10 @@ S = TypeVar("S")
 QUANTITIES = tuple(Quantity)
 RANK = {quantity: rank for rank, quantity in enumerate(QUANTITIES)}
 OF_DRONE = frozenset({Quantity.FRAME_STEP, Quantity.SURFACE})
-"""What only the drone tells. It is not counted as fused or gated, for that is of the vehicle's data, and no filter
-recovers on it: a range finder may see something else, or be stuck."""
+"""What only the drone tells. No filter recovers on it: a range finder may see something else, or be stuck."""
 _GOES_ON_S = 1.0  # between two fixes of a receiver that goes on
 _NEVER: tuple[int | None, ...] = (None,) * len(QUANTITIES)
+_NONE = (0,) * len(QUANTITIES)
 
 
 class Update(Struct, Generic[S], frozen=True, kw_only=True, eq=False):
@@ -96,14 +96,13 @@ class FilterModel(Protocol[S]):
 
 
 class Tally(Struct, frozen=True, kw_only=True):
-    """What happened to the vehicle's measurements up to a moment; tuples run over `QUANTITIES`."""
+    """What happened to the measurements up to a moment; tuples but `place_step` run over `QUANTITIES`."""
 
-    fused: int = 0
-    gated: int = 0
+    accepted: tuple[int, ...] = _NONE
+    rejected: tuple[int, ...] = _NONE  # as outliers, with those that the filter recovered on
     recoveries: int = 0
     nis_sum: float = 0.0
     nis_dof: int = 0
-    sightings: tuple[int, int] = (0, 0)  # of the pad, accepted and rejected
     moves_to_sightings: int = 0  # recoveries on them
     place_step: tuple[int, float] = (0, 0.0)  # recoveries on fixes that went on, and by how much the last moved it, m
     opened_ns: int | None = None  # when the last recovery was
@@ -171,8 +170,9 @@ def _start(model: FilterModel[S], snapshot: Snapshot[S], measurement: Measuremen
     t_ns = measurement.t_ns
     if measurement.quantity is not model.placed_by:
         return Snapshot(t_ns=t_ns, told_ns=t_ns, state=None, tally=tally)
-    accepted = _put(tally.accepted_ns, RANK[model.placed_by], t_ns)
-    started = replace(tally, fused=tally.fused + 1, accepted_ns=accepted)
+    rank = RANK[model.placed_by]
+    accepted_ns = _put(tally.accepted_ns, rank, t_ns)
+    started = replace(tally, accepted=_one_more(tally.accepted, rank), accepted_ns=accepted_ns)
     return Snapshot(t_ns=t_ns, told_ns=t_ns, state=model.start(measurement), tally=started)
 
 
@@ -184,8 +184,8 @@ def _recover(model: FilterModel[S], state: S, tally: Tally, measurement: Measure
     state = state if update is None else update.state
     tally = replace(
         tally,
+        rejected=_one_more(tally.rejected, rank),
         recoveries=tally.recoveries + 1,
-        sightings=_count_sighting(tally, rank, is_rejected=True),
         moves_to_sightings=tally.moves_to_sightings + (measurement.quantity is Quantity.PAD),
         place_step=_count_step(model, tally, measurement, before, state),
         opened_ns=t_ns,
@@ -211,12 +211,11 @@ def _count_step(
 
 def _accept(tally: Tally, rank: int, t_ns: int, update: Update[S]) -> Tally:
     return Tally(
-        fused=tally.fused + (QUANTITIES[rank] not in OF_DRONE),
-        gated=tally.gated,
+        accepted=_one_more(tally.accepted, rank),
+        rejected=tally.rejected,
         recoveries=tally.recoveries,
         nis_sum=tally.nis_sum + update.nis,
         nis_dof=tally.nis_dof + update.dof,
-        sightings=_count_sighting(tally, rank, is_rejected=False),
         moves_to_sightings=tally.moves_to_sightings,
         place_step=tally.place_step,
         opened_ns=tally.opened_ns,
@@ -228,16 +227,11 @@ def _accept(tally: Tally, rank: int, t_ns: int, update: Update[S]) -> Tally:
 def _reject(tally: Tally, rank: int, t_ns: int) -> Tally:
     since_ns = tally.rejected_since_ns[rank]
     since = _put(tally.rejected_since_ns, rank, t_ns if since_ns is None else since_ns)
-    sightings = _count_sighting(tally, rank, is_rejected=True)
-    gated = tally.gated + (QUANTITIES[rank] not in OF_DRONE)
-    return replace(tally, gated=gated, sightings=sightings, rejected_since_ns=since)
+    return replace(tally, rejected=_one_more(tally.rejected, rank), rejected_since_ns=since)
 
 
-def _count_sighting(tally: Tally, rank: int, *, is_rejected: bool) -> tuple[int, int]:
-    if rank != RANK[Quantity.PAD]:
-        return tally.sightings
-    accepted, rejected = tally.sightings
-    return accepted + (not is_rejected), rejected + is_rejected
+def _one_more(counts: tuple[int, ...], rank: int) -> tuple[int, ...]:
+    return (*counts[:rank], counts[rank] + 1, *counts[rank + 1 :])
 
 
 def _put(values: tuple[int | None, ...], index: int, value: int | None) -> tuple[int | None, ...]:

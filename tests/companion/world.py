@@ -30,6 +30,7 @@ from link.mavlink.dialect import mavlink
 from link.messages import Command, PadGeometry, Station, Vector3
 from link.program.toml_config import merge, validate
 from link.records import replace
+from tests.companion.health import health_of
 
 CONFIG = CompanionConfig(integrity=IntegrityConfig(receiver_frames=ReceiverFrames.ONE))
 
@@ -99,7 +100,7 @@ class KnownVehicle:
         return memory
 
     def health(self, _memory: int | None) -> BufferHealth:
-        return BufferHealth(fused=0, gated=0, late=0, recoveries=0, nis_per_dof=None, nis_dof=0)
+        return health_of({})
 
 
 def fix(t_ns: int) -> Measurement:

@@ -166,7 +166,7 @@ def place_by_deck(vehicle: VehicleMemory, pad: PadPath | None, inputs: StepInput
         covariance=config.sortie.launch.placed_std_m**2 * np.eye(3),
     )
     estimator = system.estimator.fuse(vehicle.estimator, [stands])
-    counted = system.estimator.health(estimator).sightings  # it is none of a detector's
+    counted = system.estimator.health(estimator).counts(Quantity.PAD)  # it is none of a detector's
     sightings = replace(vehicle.sightings, counted=counted, is_confirmed=True)
     return replace(vehicle, estimator=estimator, sightings=sightings)
 

@@ -30,6 +30,7 @@ from companion.vehicle.pad_reach import cone_radius_at_pad_m, is_unseen
 from link.messages import PadGeometry
 from link.records import replace
 from tests.companion.facts import CONFIG, LONG_HEARD, changed, decided, pad_at, progress, situation
+from tests.companion.health import health_of
 from tests.companion.vehicle.drives import NOMINAL, Sensors, circle
 from tests.companion.vehicle.rides import arrivals, estimator, now_ns
 
@@ -118,16 +119,7 @@ def after_ride(sensors: Sensors, off_m: float) -> Situation:
 
 
 def health(accepted: int, rejected: int, moves: int = 0) -> BufferHealth:
-    return BufferHealth(
-        fused=0,
-        gated=0,
-        late=0,
-        recoveries=0,
-        nis_per_dof=None,
-        nis_dof=0,
-        sightings=(accepted, rejected),
-        moves_to_sightings=moves,
-    )
+    return health_of({Quantity.PAD: (accepted, rejected)}, moves_to_sightings=moves)
 
 
 @given(
@@ -251,7 +243,7 @@ def test_estimator_counts_what_it_rejects_of_two_detectors() -> None:
         if measurement.t_ns < now_ns(4.0):
             sightings += measurement.quantity is Quantity.PAD
             memory = chosen.fuse(memory, [beside(measurement, 2.0 * (sightings % 3 == 0))])
-    accepted, rejected = chosen.health(memory).sightings
+    accepted, rejected = chosen.health(memory).counts(Quantity.PAD)
     assert accepted + rejected == sightings
     assert rejected > SHARE * sightings
 

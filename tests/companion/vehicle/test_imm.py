@@ -196,7 +196,7 @@ def test_emergency_brake_is_not_taken_for_outliers(deceleration_m_s2: float, see
     truth = drive(13.0, lambda t: float(np.clip(15.0 - deceleration_m_s2 * (t - 10.02), 0.0, 15.0)), lambda _: 0.0)
     chosen = estimator(IMM)
     done = ride(chosen, truth, NOMINAL, seed, from_s=9.0)
-    assert chosen.health(done.memory).gated == 0
+    assert not any(chosen.health(done.memory).rejected)
 
 
 @pytest.mark.parametrize(("length_s", "bound_m"), [(1.0, 0.15), (2.0, 0.4), (3.0, 0.9)])

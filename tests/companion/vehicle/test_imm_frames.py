@@ -99,7 +99,7 @@ def test_frame_that_steps_takes_what_is_seen_along_and_leaves_what_stands_on_the
     still = arrivals(straight(5.0, 20.0), sensors, 3)
     moved = [_moved(one, at_s, STEP_M, told_m) for one in still] + [_step(STEP_M, told_m, at_s)]
     health = chosen.health(chosen.fuse(None, moved))
-    assert (health.gated, health.recoveries, health.moves_to_sightings) == (0, 0, 0)
+    assert (sum(health.rejected), health.recoveries, health.moves_to_sightings) == (0, 0, 0)
     for t_ns in (now_ns(8.06), now_ns(8.3), now_ns(12.0)):
         before, now = (
             chosen.estimate(chosen.fuse(None, [one for one in said if one.t_ns <= t_ns]), t_ns)
