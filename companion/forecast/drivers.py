@@ -131,6 +131,9 @@ def chances(
 ) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
     """Return how likely the vehicle does nothing new, slows, speeds up (or departs), and turns in, (4,).
 
+    One that turns and uses a pedal, too, counts for its pedal: a turn, which every bend ends with, would otherwise take
+    from the weight of a brake, which displaces the pad by more.
+
     Args:
         drivers: what is known of them.
         within_s: for how long anything may begin.
@@ -138,12 +141,9 @@ def chances(
         exits_hz: at which rate a bend ends beside the turns that have been seen.
         stands: whether the vehicle does.
     """
-    if stands:
-        expected = within_s * np.array([0.0, drivers.rate_hz(DEPARTS), 0.0])
-    else:
-        expected = np.array([drivers.rate_hz(kind) for kind in (SLOWS, SPEEDS_UP, TURNS)])
-        expected[2] += exits_hz
-        expected *= [within_s, within_s, turns_s]
-    total = float(expected.sum())
-    none = math.exp(-total)
-    return np.concatenate([[none], (1.0 - none) * expected / total])
+    kinds = (DEPARTS,) if stands else (SLOWS, SPEEDS_UP)
+    pedals = within_s * np.array([0.0, *map(drivers.rate_hz, kinds)])[-2:]
+    turns = 0.0 if stands else turns_s * (drivers.rate_hz(TURNS) + exits_hz)
+    by_pedal = pedals * -math.expm1(-pedals.sum()) / pedals.sum()
+    no_pedal = math.exp(-pedals.sum())
+    return np.array([no_pedal * math.exp(-turns), *by_pedal, no_pedal * -math.expm1(-turns)])

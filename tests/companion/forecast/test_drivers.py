@@ -7,7 +7,7 @@ import pytest
 
 from companion.forecast.branches import NOTHING, SLOWER, TURN, make_events
 from companion.forecast.draws import draws
-from companion.forecast.drivers import DEPARTS, PRIOR_GAPS_S, SLOWS, TURNS, Drivers, chances, update_drivers
+from companion.forecast.drivers import DEPARTS, PRIOR_GAPS_S, SLOWS, SPEEDS_UP, TURNS, Drivers, chances, update_drivers
 from companion.vehicle.hindsight import Driven
 
 START_NS = 1_795_000_000_000_000_000
@@ -82,6 +82,14 @@ def test_chances_and_weights_are_probabilities(stands: bool) -> None:
     nothing = float(events.weight[numbers.branch == NOTHING].sum())
     rates_hz = [1.0 / PRIOR_GAPS_S[DEPARTS]] if stands else [1.0 / gap_s for gap_s in PRIOR_GAPS_S[:3]]
     assert nothing == pytest.approx(math.exp(-1.7 * sum(rates_hz)))  # of a Poisson process
+
+
+def test_end_of_a_bend_takes_nothing_from_the_weight_of_a_brake() -> None:
+    straight, bend = (chances(Drivers(), 2.0, 2.0, exits_hz, stands=False) for exits_hz in (0.0, 2.0))
+    assert bend[1:3] == pytest.approx(straight[1:3])
+    assert bend[3] > 0.5 > straight[3]
+    alone = -np.expm1(-2.0 * (Drivers().rate_hz(SLOWS) + Drivers().rate_hz(SPEEDS_UP)))
+    assert bend[1:3].sum() == pytest.approx(alone)
 
 
 def test_brakes_have_the_domains_mean_and_its_heavy_tail() -> None:
