@@ -89,7 +89,7 @@ def steer(model: Array, state: Array, off: Array, known: Array, drone: Follower)
 
 @compiled_kernel
 def plan(
-    model: Array, jerk: tuple[float, float], expected: Array, air: Array, bounds: tuple[float, float, float]
+    model: Array, jerk: tuple[float, float], expected: Array, holds: Array, bounds: tuple[float, float, float]
 ) -> None:
     """Move the virtual model (3, 2) by one step with a jerk, within bounds.
 
@@ -97,16 +97,17 @@ def plan(
         model: off the pad's forecast.
         jerk: as `steer` returns it.
         expected: (2,) acceleration of the forecast.
-        air: (2,) thrust by mass that holds against the air.
-        bounds: of the jerk (m/s^3), the acceleration, and the horizontal thrust by mass beyond that of steady flight.
+        holds: (2,) thrust by mass that holds against the air and makes up for the deviation.
+        bounds: of the jerk (m/s^3), the acceleration, and the horizontal thrust by mass.
     """
     jerk_max_m_s3, most_m_s2, leans_m_s2 = bounds
     share = DT_S * min(1.0, jerk_max_m_s3 / max(math.hypot(jerk[0], jerk[1]), 1e-9))
     bx, by = expected[0] + model[2, 0], expected[1] + model[2, 1]
     ax, ay = bx + jerk[0] * share, by + jerk[1] * share
     size = max(math.hypot(ax, ay), 1e-9)
-    along_m_s2, holds_m_s2 = (ax * air[0] + ay * air[1]) / size, math.hypot(air[0], air[1])
-    left_m_s2 = math.sqrt(leans_m_s2 * (2.0 * holds_m_s2 + leans_m_s2) + along_m_s2**2) - along_m_s2
+    along_m_s2 = (ax * holds[0] + ay * holds[1]) / size
+    left_m_s2 = leans_m_s2**2 - holds[0] ** 2 - holds[1] ** 2 + along_m_s2**2
+    left_m_s2 = max(math.sqrt(max(left_m_s2, 0.0)) - along_m_s2, 0.0)
     most_m_s2 = max(min(most_m_s2, left_m_s2), math.hypot(bx, by) - jerk_max_m_s3 * DT_S)
     back = min(1.0, most_m_s2 / size)
     model[2, 0], model[2, 1] = ax * back - expected[0], ay * back - expected[1]
@@ -156,6 +157,7 @@ def _fly(path: Array, samples: Samples, sample: int, descent: Descent, out: Arra
     model, state = course.model.copy(), samples.deviation[sample].copy()
     known, off, expected, lean = np.zeros((3, 2)), np.empty((2, 2)), np.empty(2), np.empty(2)
     before_m_s2, held, waited = np.empty(2), course.air_enu_m_s2 + state[3], 0
+    holds, trims_m_s2 = np.empty(2), math.hypot(course.air_enu_m_s2[0], course.air_enu_m_s2[1])
     # By another sample's numbers than those of its gusts, and so independent of them.
     error, others = path[0, :2].copy(), samples.pushes[sample - 1]
     left = math.exp(-drone.relearns_hz * DT_S)
@@ -173,6 +175,7 @@ def _fly(path: Array, samples: Samples, sample: int, descent: Descent, out: Arra
             off[1, i] = model[1, i] + state[1, i] - known[1, i]
             lean[i] = expected[i] + state[2, i] + held[i]
             held[i] -= drone.forgets_hz * state[3, i] * DT_S
+            holds[i] = held[i] - drone.damping_per_s * state[1, i] - drone.stiffness_per_s2 * state[0, i]
         along_m_s2 = course.along_m_s2[k] + known[2, 0] * cx + known[2, 1] * cy
         if _waits(off, along_m_s2, height_m, rules):
             waited += 1
@@ -185,10 +188,13 @@ def _fly(path: Array, samples: Samples, sample: int, descent: Descent, out: Arra
             lean += GRAVITY_M_S2 * (course.slope[k] + samples.deck[sample, 0])
             _touch(off, lean, sink_m_s + samples.vertical[sample, 1], course.air_enu_m_s2, out)
             return
-        leans_m_s2 = drone.level_m_s2 if height_m < drone.level_below_m else GRAVITY_M_S2
+        turns_m_s2 = max(math.hypot(expected[0], expected[1]), drone.level_m_s2)
+        more_m_s2 = max(math.hypot(expected[0] + model[2, 0], expected[1] + model[2, 1]) - turns_m_s2, 0.0)
+        levels = height_m < drone.level_below_m + max(sink_m_s, 0.0) * more_m_s2 / drone.jerk_max_m_s3
+        leans_m_s2 = drone.level_m_s2 if levels else GRAVITY_M_S2
         before_m_s2[:] = model[2]
-        bounds = (drone.jerk_max_m_s3, drone.acceleration_max_m_s2, leans_m_s2)
-        plan(model, steer(model, state, off, known, drone), expected, course.air_enu_m_s2, bounds)
+        bounds = (drone.jerk_max_m_s3, drone.acceleration_max_m_s2, trims_m_s2 + leans_m_s2)
+        plan(model, steer(model, state, off, known, drone), expected, holds, bounds)
         follow(state, before_m_s2, model[2], samples.pushes[sample, k], drone)
 
 

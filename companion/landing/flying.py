@@ -102,7 +102,7 @@ def fly(
         touched_enu_m=aim.touched_enu_m,
         dt_s=period_s,
     )
-    request = replace(request, limits=limit_tilt(request, model.tracking.air_enu_m_s2))
+    request = replace(request, limits=limit_tilt(request, model.tracking.holds_enu_m_s2))
     guidance, plan = system.guidance.plan(model.guidance, request)
     flown = flown_plan(plan, period_s, float(aim.floor_enu_m[0]), inputs.shaping, limits)
     plan = replace(plan, next_state=state_at(flown, period_s))

@@ -20,6 +20,7 @@ from link.records import replace
 _HISTORY_S = 0.6  # longer than any telemetry is late
 UPRIGHT_MIN = 0.5  # cosine of a tilt beyond which nothing is steady
 _AIR_MEAN_S = 1.0  # longer than a gust's beginning, shorter than a change of speed
+_HOLDS_MEAN_S = 0.1  # of five reports, shorter than a position controller's swing
 _RIDE_MEAN_S = 0.5  # as the last quarter of a metre takes before it may touch
 _RIDE_MAX_M = 0.15  # a lag of 0.3 s while it sinks at 0.5 m/s: what is more does not last
 _BREAK_S = 0.25  # between two reports, after which the deviation is what the next one shows
@@ -34,6 +35,8 @@ class Tracking(Struct, frozen=True, kw_only=True, eq=False):
         error_m: from the drone to the model at the time of its newest report.
         deviation: (4, 2) horizontal state of `ResponseModel` then: from the model to the drone, and what moves it.
         air_enu_m_s2: (2,) horizontal thrust by mass that holds against the air, a mean of the last second.
+        holds_enu_m_s2: (2,) likewise what the drone leans beyond what the model accelerates by, of the last tenth: what
+            holds against the air, and what makes up for the deviation.
         velocity_enu_m_s: (2,) horizontal velocity of the drone then.
         compared_ns: monotonic time of the newest report that was compared; None before the first.
     """
@@ -42,6 +45,7 @@ class Tracking(Struct, frozen=True, kw_only=True, eq=False):
     error_m: float = 0.0
     deviation: Array = field(default_factory=lambda: np.zeros((STATES, 2)))
     air_enu_m_s2: Array = field(default_factory=lambda: np.zeros(2))
+    holds_enu_m_s2: Array = field(default_factory=lambda: np.zeros(2))
     velocity_enu_m_s: Array = field(default_factory=lambda: np.zeros(2))
     compared_ns: int | None = None
 
@@ -76,11 +80,13 @@ def update_tracking(
     position, velocity, acceleration = _model_at(tracking, own_ns)
     behind = position - np.array(own.position_enu_m)
     since_s = math.inf if before_ns is None else (own_ns - before_ns) * 1e-9
+    air_enu_m_s2, holds_enu_m_s2 = _update_leans(tracking, own, own_ns, since_s, response)
     tracking = replace(
         tracking,
         error_m=math.hypot(*behind.tolist()),
         compared_ns=own_ns,
-        air_enu_m_s2=_update_air(tracking, own, since_s),
+        air_enu_m_s2=air_enu_m_s2,
+        holds_enu_m_s2=holds_enu_m_s2,
         velocity_enu_m_s=np.array(own.velocity_enu_m_s[:2]),
     )
     if not estimates or response is None:
@@ -140,14 +146,23 @@ def tracking_error_max_m(
     return stds_max * math.hypot(math.sqrt(response.spread[0, 0]), speed_m_s * delay_std_s)
 
 
-def _update_air(tracking: Tracking, own: OwnState, since_s: float) -> Array:
-    """Return the mean of what the drone leans beyond what accelerates it, by the change of its own velocity."""
+def _update_leans(
+    tracking: Tracking, own: OwnState, own_ns: int, since_s: float, response: ResponseModel | None
+) -> tuple[Array, Array]:
+    """Return the means of what the drone leans beyond what accelerates it, and beyond what the model accelerates by.
+
+    The first is by the change of its own velocity, the second by the model when the autopilot was to lean as now.
+    """
+    air, holds = tracking.air_enu_m_s2, tracking.holds_enu_m_s2
     x, y, up = rotate(own.orientation_wxyz, (0.0, 0.0, 1.0))
     if up < UPRIGHT_MIN or not 0.0 < since_s < _BREAK_S:
-        return tracking.air_enu_m_s2
+        return air, holds
+    leans = np.array([x, y]) * (GRAVITY_M_S2 / up)
     changed = (np.array(own.velocity_enu_m_s[:2]) - tracking.velocity_enu_m_s) / since_s
-    leans = np.array([x, y]) * (GRAVITY_M_S2 / up) - changed
-    return np.asarray(tracking.air_enu_m_s2 - math.expm1(-since_s / _AIR_MEAN_S) * (leans - tracking.air_enu_m_s2))
+    lag_s = 0.0 if response is None else response.cascade.lean_lag_s
+    _, _, asked = _model_at(tracking, own_ns - round(lag_s * 1e9))
+    air = air - math.expm1(-since_s / _AIR_MEAN_S) * (leans - changed - air)
+    return np.asarray(air), np.asarray(holds - math.expm1(-since_s / _HOLDS_MEAN_S) * (leans - asked[:2] - holds))
 
 
 def _model_at(tracking: Tracking, t_ns: int) -> tuple[Array, Array, Array]:

@@ -7,6 +7,8 @@ steady flight: one that leans against a fast vehicle's wind comes upright as it 
 
 import math
 
+import numpy as np
+
 from companion.config.companion import CompanionConfig
 from companion.core.data import Array, FlightLimits
 from companion.landing.state.memory import StepMemory
@@ -27,42 +29,54 @@ def limits_now(memory: StepMemory, situation: Situation, inputs: StepInputs, con
     """Return the limits of this step: just above the pad the drone turns less than the deck, to touch down level.
 
     A drone that leans touches with its lowest foot, so it begins that much higher. It begins earlier by the time that
-    turning takes at the largest jerk, by which its lean lags, and by which nearly every setpoint is late at most. One
-    that breaks off climbs before it leans.
+    it takes to come upright at the largest jerk, by which its lean lags, and by which nearly every setpoint is late at
+    most. One that breaks off climbs before it leans.
     """
     limits, relative, drone = inputs.limits, situation.approach, situation.drone
     if memory.progress.phase not in (Phase.DESCEND, Phase.ABORT) or relative is None or drone is None:
         return limits
     escape_m = 0.0 if memory.progress.phase is Phase.DESCEND else config.descent.commit_height_m
-    kept_m_s2, below_m = level_end(situation.pad, relative, inputs, config)
+    asked = np.zeros(2) if memory.model.reference is None else memory.model.reference.acceleration_enu_m_s2[:2]
+    tracking = memory.model.tracking
+    leans = asked + tracking.holds_enu_m_s2 - tracking.air_enu_m_s2
+    kept_m_s2, below_m = level_end(situation.pad, relative, inputs, config, leans_m_s2=math.hypot(*leans.tolist()))
     if lowest_foot_m(situation, relative, config) > below_m + escape_m:
         return limits
-    leans_m_s2 = math.hypot(*memory.model.tracking.air_enu_m_s2.tolist()) + kept_m_s2
-    return replace(limits, tilt_acceleration_m_s2=min(leans_m_s2, limits.tilt_acceleration_m_s2))
+    most_m_s2 = math.hypot(*tracking.air_enu_m_s2.tolist()) + kept_m_s2
+    return replace(limits, tilt_acceleration_m_s2=min(most_m_s2, limits.tilt_acceleration_m_s2))
 
 
 def level_end(
-    pad: PadPath | None, relative: Approach, inputs: StepInputs, config: CompanionConfig
+    pad: PadPath | None, relative: Approach, inputs: StepInputs, config: CompanionConfig, *, leans_m_s2: float = 0.0
 ) -> tuple[float, float]:
-    """Return how much a drone that levels leans beyond steady flight, m/s^2, and the lowest foot's height to begin."""
+    """Return how much a drone that levels leans beyond steady flight, m/s^2, and the lowest foot's height to begin.
+
+    Args:
+        pad: that it lands on.
+        relative: to it.
+        inputs: of the step.
+        config: the companion's.
+        leans_m_s2: by how much it leans beyond steady flight before, if by more than the pad turns.
+    """
     limits, touchdown = inputs.limits, config.touchdown
     turns_m_s2 = 0.0 if pad is None else math.hypot(*pad.acceleration_enu_m_s2[0, :2].tolist())
     kept_m_s2 = min(_kept_m_s2(turns_m_s2, limits.jerk_max_m_s3, config), limits.acceleration_max_m_s2)
-    takes_s = max(turns_m_s2 - kept_m_s2, 0.0) / limits.jerk_max_m_s3
+    takes_s = max(turns_m_s2 - kept_m_s2, leans_m_s2 - kept_m_s2, 0.0) / limits.jerk_max_m_s3
     takes_s += 0.0 if inputs.response is None else inputs.response.cascade.lean_lag_s
     early_m = max(-relative.climb_m_s, 0.0) * (takes_s + touchdown.level.late_stds * inputs.link_delay.std_s)
     return kept_m_s2, touchdown.level.height_m + early_m
 
 
-def limit_tilt(request: PlanRequest, air_enu_m_s2: Array) -> FlightLimits:
+def limit_tilt(request: PlanRequest, holds_enu_m_s2: Array) -> FlightLimits:
     """Return the limits with the acceleration that the largest tilt leaves in the direction in which it is needed.
 
-    Of the horizontal thrust by mass R some holds against the air, w. Along the unit vector d there is left
-    `-(d w) + sqrt(R^2 - w^2 + (d w)^2)`: less to go faster, more to brake.
+    Of the horizontal thrust by mass R some holds against the air and makes up for the deviation, w. Along the unit
+    vector d there is left `-(d w) + sqrt(R^2 - w^2 + (d w)^2)`: less to go faster, more to brake. Where the path's
+    present acceleration takes more than R, that is to shrink first, though another direction will be needed.
 
     Args:
         request: of the plan; its target tells what is needed, in a second's time.
-        air_enu_m_s2: (2,) what holds against the air.
+        holds_enu_m_s2: (2,) what the drone leans beyond what its path accelerates by.
     """
     limits, state, target = request.limits, request.state, request.target
     most_m_s2 = limits.tilt_acceleration_m_s2
@@ -70,11 +84,17 @@ def limit_tilt(request: PlanRequest, air_enu_m_s2: Array) -> FlightLimits:
         return limits
     needed = target.acceleration_enu_m_s2[0] + target.velocity_enu_m_s[0] - state.velocity_enu_m_s
     needed = (needed + target.position_enu_m[0] - state.position_enu_m)[:2]
-    size, (wx, wy) = math.hypot(*needed.tolist()), air_enu_m_s2.tolist()
-    along_m_s2 = float(needed @ air_enu_m_s2) / size if size > 0.0 else 0.0
-    left_m_s2 = math.sqrt(max(most_m_s2**2 - wx**2 - wy**2 + along_m_s2**2, 0.0)) - along_m_s2
+    left_m_s2, here = _left_m_s2(needed, holds_enu_m_s2, most_m_s2), state.acceleration_enu_m_s2[:2]
+    if math.hypot(*(here + holds_enu_m_s2).tolist()) > most_m_s2:
+        left_m_s2 = min(left_m_s2, _left_m_s2(here, holds_enu_m_s2, most_m_s2))
     left_m_s2 = max(left_m_s2, _LEFT_MIN_SHARE * most_m_s2)
     return replace(limits, acceleration_max_m_s2=min(limits.acceleration_max_m_s2, left_m_s2))
+
+
+def _left_m_s2(direction: Array, holds_enu_m_s2: Array, most_m_s2: float) -> float:
+    size, (wx, wy) = math.hypot(*direction.tolist()), holds_enu_m_s2.tolist()
+    along_m_s2 = float(direction @ holds_enu_m_s2) / size if size > 0.0 else 0.0
+    return math.sqrt(max(most_m_s2**2 - wx**2 - wy**2 + along_m_s2**2, 0.0)) - along_m_s2
 
 
 def lowest_foot_m(situation: Situation, relative: Approach, config: CompanionConfig) -> float:

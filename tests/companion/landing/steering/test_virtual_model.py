@@ -113,6 +113,21 @@ def test_drone_that_leans_as_its_path_accelerates_holds_against_nothing() -> Non
         own = _own(i * STEP_NS, 0.5 * speeding_m_s2 * t_s**2, speeding_m_s2 * t_s, leaning)
         tracking = update_tracking(tracking, i * STEP_NS, own, RESPONSE, estimates=True)
     np.testing.assert_allclose(tracking.air_enu_m_s2, 0.0, atol=1e-6)
+    np.testing.assert_allclose(tracking.holds_enu_m_s2, 0.0, atol=1e-6)
+
+
+def test_drone_that_leans_to_come_back_to_its_path_holds_more_than_against_the_air() -> None:
+    back_m_s2 = -0.8  # it is ahead of its path, and slows down
+    lean_rad = math.atan(back_m_s2 / GRAVITY_M_S2)
+    leaning = (math.cos(lean_rad / 2.0), 0.0, math.sin(lean_rad / 2.0), 0.0)
+    tracking = Tracking()
+    for i in range(1, 100):
+        t_s = i * STEP_NS * 1e-9
+        tracking = add_to_past(tracking, i * STEP_NS, _state(t_s, 5.0))
+        own = _own(i * STEP_NS, 5.0 * t_s, 5.0 + back_m_s2 * t_s, leaning)
+        tracking = update_tracking(tracking, i * STEP_NS, own, RESPONSE, estimates=True)
+    np.testing.assert_allclose(tracking.air_enu_m_s2, 0.0, atol=1e-3)
+    np.testing.assert_allclose(tracking.holds_enu_m_s2, [back_m_s2, 0.0], atol=1e-3)
 
 
 def test_setpoint_is_the_model() -> None:

@@ -148,6 +148,16 @@ def test_a_drone_that_leans_against_the_wind_of_its_way_is_levelled_to_that_lean
     assert _left_m_s2(_turned(3.0, needed_rad), air, limits) == pytest.approx(left_m_s2)
 
 
+@pytest.mark.parametrize(("leans_m_s2", "levels"), [(2.0, False), (5.0, True)])
+def test_a_drone_that_leans_more_than_the_pad_turns_is_levelled_earlier(leans_m_s2: float, *, levels: bool) -> None:
+    tracking = replace(DESCENDS.model.tracking, holds_enu_m_s2=np.array([0.0, leans_m_s2]))
+    flies = replace(DESCENDS, model=replace(DESCENDS.model, tracking=tracking))
+    facts = _sinking(CONFIG.touchdown.level.height_m + 0.05, 0.4)
+    limits = replace(LIMITS, jerk_max_m_s3=20.0)
+    limit_m_s2 = limits_now(flies, facts, replace(INPUTS, limits=limits), CONFIG).tilt_acceleration_m_s2
+    assert limit_m_s2 == (LEVEL_M_S2 if levels else LIMITS.tilt_acceleration_m_s2)
+
+
 def test_nothing_but_a_descent_and_its_abort_is_levelled() -> None:
     assert leans_max(0.05, 0.0, changed(DESCENDS, phase=Phase.ALIGN)) == LIMITS.tilt_acceleration_m_s2
 
@@ -189,7 +199,7 @@ def _tilts(tilt_m_s2: float) -> FlightLimits:
     return replace(LIMITS, acceleration_max_m_s2=100.0, tilt_acceleration_m_s2=tilt_m_s2)
 
 
-def _left_m_s2(needed: Array, air_enu_m_s2: Array, limits: FlightLimits) -> float:
+def _left_m_s2(needed: Array, holds_enu_m_s2: Array, limits: FlightLimits) -> float:
     """What is left of a drone's tilt that is wanted off where it is, by (2,)."""
     offset_s = np.arange(0.0, 1.0, 0.2)
     still = np.zeros((len(offset_s), 3))
@@ -207,7 +217,7 @@ def _left_m_s2(needed: Array, air_enu_m_s2: Array, limits: FlightLimits) -> floa
         floor_enu_m=still[:, 2],
         dt_s=0.02,
     )
-    return limit_tilt(request, air_enu_m_s2).acceleration_max_m_s2
+    return limit_tilt(request, holds_enu_m_s2).acceleration_max_m_s2
 
 
 @given(tilt_m_s2=thrusts, share=shares, to_rad=sides, air_rad=sides)
