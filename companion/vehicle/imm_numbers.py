@@ -105,7 +105,9 @@ def numbers_of(config: ImmConfig, deck: Deck) -> Numbers:
     level = (2.0 * math.pi * swing.tilt.frequency_hz, swing.tilt.damping, 0.0)  # until it is told
     lever_m = (*deck.antenna_to_pad_m, deck.pad_height_m)
     modes, heading = _modes(config), config.heading
-    course = (heading.course_speed_min_m_s, heading.course_std_rad**2, heading.known_std_rad**2)
+    # Wind and current set a vessel: at no speed does its course tell where it points.
+    least_m_s = math.inf if deck.is_afloat else heading.course_speed_min_m_s
+    course = (least_m_s, heading.course_std_rad**2, heading.known_std_rad**2)
     return Numbers(
         motion=np.array(
             [

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from companion.config.estimation import ImmConfig
+from companion.config.estimation import BufferConfig, ImmConfig
 from companion.core.data import Measurement, Quantity
+from companion.vehicle.estimator import BufferedEstimator
 from companion.vehicle.imm import ImmModel
 from companion.vehicle.imm_forecast import forecast_modes
 from companion.vehicle.imm_kernels import HEADING
@@ -13,7 +14,8 @@ from companion.vehicle.imm_numbers import Deck, noises_with, numbers_of
 from companion.vehicle.imm_sensors import antenna_velocity
 from companion.vehicle.imm_swing import PITCH_RATE, ROLL_RATE, SIZE
 from link.records import replace
-from tests.companion.vehicle.rides import now_ns
+from tests.companion.vehicle.drives import NOMINAL, straight
+from tests.companion.vehicle.rides import arrivals, now_ns
 from tests.companion.vehicle.test_imm_kernels import MOTION, NOISE, a_state
 
 JERK, LATERAL = 0, 2
@@ -77,3 +79,14 @@ def test_a_velocity_that_contradicts_opens_every_rate_and_slope_that_it_is_made_
     for state in np.flatnonzero(np.abs(H).max(axis=0) > 0.0).tolist():
         if state not in (HEADING, ROLL_RATE, PITCH_RATE):  # of which other sensors tell
             assert opened[state] == imm.numbers.prior_variances[state]
+
+
+@pytest.mark.parametrize("is_afloat", [False, True])
+def test_course_tells_where_a_car_points_and_not_where_a_vessel_does(*, is_afloat: bool) -> None:
+    deck = Deck(antenna_to_pad_m=(-3.0, 0.0, 0.5), is_afloat=is_afloat)
+    chosen = BufferedEstimator(model=ImmModel(config=ImmConfig(), deck=deck), config=BufferConfig())
+    silent = replace(NOMINAL, heading_std_rad=0.0, yaw_rate_std_rad_s=0.0)
+    memory = chosen.fuse(None, arrivals(straight(3.0, 10.0), silent, 1))
+    estimate = chosen.estimate(memory, now_ns(9.0))
+    assert estimate is not None
+    assert (estimate.yaw_rad is None) is is_afloat
