@@ -69,7 +69,11 @@ def update_vehicle(vehicle: VehicleMemory, inputs: StepInputs, system: System) -
         contradictions=contradictions,
         sightings=sightings,
         phases=update_fixed_phases(
-            phases, inputs.vehicle.measurements, now_ns, drone_is_fixed=inputs.autopilot.receiver.is_fixed
+            phases,
+            inputs.vehicle.measurements,
+            now_ns,
+            drone_is_fixed=inputs.autopilot.receiver.is_fixed,
+            moves=inputs.autopilot.frame_moves,
         ),
     )
 
