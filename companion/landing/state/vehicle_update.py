@@ -5,15 +5,8 @@ import math
 import numpy as np
 
 from companion.core.data import Array, Forecast, Measurement, Quantity, RangeReading
-from companion.integrity.sightings import (
-    SightingWatch,
-    are_frames_one,
-    forget_agreement,
-    forget_step,
-    update_fixed_phases,
-    update_sightings,
-    with_place_step,
-)
+from companion.integrity.frames import are_frames_one, update_fixed_phases, with_place_step
+from companion.integrity.sightings import SightingWatch, forget_agreement, forget_step, update_sightings
 from companion.integrity.stamps import FixStamps, update_fix_stamps
 from companion.integrity.vehicle_data import Contradictions, update_contradictions, without_contradicted_heading
 from companion.landing.state.memory import VehicleMemory, between

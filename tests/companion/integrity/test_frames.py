@@ -9,7 +9,7 @@ from companion.autopilots.driver import Receiver
 from companion.autopilots.frame_moves import NO_MOVES, FrameMoves
 from companion.config.integrity import ReceiverFrames
 from companion.core.data import Measurement, Quantity
-from companion.integrity.sightings import (
+from companion.integrity.frames import (
     FIXED_STD_MAX_M,
     FixedPhases,
     are_frames_one,
