@@ -3,7 +3,8 @@
 Each receiver states its error within its own frame. How far these are apart neither states: centimetres where both are
 corrected by one base station or network, and metres without corrections. Phases that are fixed on both are taken for
 corrections of one source, for that is how they are flown; who has two base stations says so (`receiver_frames`).
-Otherwise only sightings of the pad tell the offset, which the estimate has as unknown until then.
+Otherwise only sightings of the pad tell the offset, which the estimate has as unknown until then. That is so as well
+while the drone's receiver has no fix, whoever says what: its autopilot goes on by dead reckoning then.
 
 A fixed carrier phase errs by a quarter of its wavelength at most, which is what reflections do to it
 (Hofmann-Wellenhof, Lichtenegger and Collins, "GPS: Theory and Practice", 5th edition, multipath): who states more has
@@ -16,6 +17,7 @@ from collections.abc import Sequence
 
 from msgspec import Struct
 
+from companion.autopilots.driver import Receiver
 from companion.autopilots.frame_moves import NO_MOVES, FrameMoves, stepped_in_frame_m
 from companion.config.integrity import ReceiverFrames
 from companion.core.data import Measurement, Quantity
@@ -30,7 +32,7 @@ _HOLD_S = 2.0  # two of the autopilot's reports of its receiver
 
 
 class FixedPhases(Struct, frozen=True, kw_only=True):
-    """What both receivers say of their phases.
+    """What both receivers say of their phases, and the drone's of its fix.
 
     Attributes:
         vehicle_std_m: that the newest fix of the vehicle states horizontally, None before the first.
@@ -39,6 +41,7 @@ class FixedPhases(Struct, frozen=True, kw_only=True):
         has_vehicle_stepped: by more than fixed phases err, while both had them.
         fixed_moves: of the drone's place and of its local frame, when both had fixed phases first.
         has_drone_stepped: since then, by more than fixed phases err.
+        unfixed_ns: monotonic, when the drone's receiver was without a fix last; None while it never was.
     """
 
     vehicle_std_m: float | None = None
@@ -47,6 +50,7 @@ class FixedPhases(Struct, frozen=True, kw_only=True):
     has_vehicle_stepped: bool = False
     fixed_moves: FrameMoves = NO_MOVES
     has_drone_stepped: bool = False
+    unfixed_ns: int | None = None
 
     @property
     def has_stepped(self) -> bool:
@@ -59,7 +63,7 @@ def update_fixed_phases(
     measurements: Sequence[Measurement],
     monotonic_ns: int,
     *,
-    drone_is_fixed: bool,
+    drone: Receiver,
     moves: FrameMoves,
 ) -> FixedPhases:
     """Return what both receivers say by now.
@@ -70,7 +74,7 @@ def update_fixed_phases(
         before: by the step before.
         measurements: of the vehicle since then.
         monotonic_ns: now.
-        drone_is_fixed: the drone's receiver has fixed phases, as its autopilot tells.
+        drone: what its receiver says, as the autopilot tells.
         moves: of the drone's place and of its local frame.
     """
     fixes = [one for one in measurements if one.quantity is Quantity.POSITION]
@@ -79,8 +83,8 @@ def update_fixed_phases(
         newest = max(fixes, key=lambda fix: fix.t_ns)
         std_m = max(newest.covariance.diagonal().tolist()[:2]) ** 0.5
     vehicle_is_fixed = std_m is not None and std_m <= FIXED_STD_MAX_M
-    are_both = vehicle_is_fixed and drone_is_fixed
-    is_compared = drone_is_fixed and (before.since_ns is not None or before.has_drone_stepped)
+    are_both = vehicle_is_fixed and drone.is_fixed
+    is_compared = drone.is_fixed and (before.since_ns is not None or before.has_drone_stepped)
     fixed_moves = before.fixed_moves if is_compared else moves
     return FixedPhases(
         vehicle_std_m=std_m,
@@ -89,6 +93,7 @@ def update_fixed_phases(
         has_vehicle_stepped=before.has_vehicle_stepped and vehicle_is_fixed,
         fixed_moves=fixed_moves,
         has_drone_stepped=_has_drone_stepped(fixed_moves, moves),
+        unfixed_ns=monotonic_ns if drone.has_fix is False else before.unfixed_ns,
     )
 
 
@@ -117,10 +122,15 @@ def are_frames_one(phases: FixedPhases, configured: ReceiverFrames, monotonic_ns
     """Return whether both receivers' positions can be compared without a sighting."""
     match configured:
         case ReceiverFrames.ONE:
-            return not phases.has_stepped
+            is_lost = phases.unfixed_ns is not None and not _is_held(phases.unfixed_ns, monotonic_ns)
+            return not (is_lost or phases.has_stepped)
         case ReceiverFrames.APART:
             return False
         case ReceiverFrames.AUTO:
             if phases.since_ns is None or phases.has_stepped:
                 return False
-            return (monotonic_ns - phases.since_ns) * 1e-9 >= _HOLD_S
+            return _is_held(phases.since_ns, monotonic_ns)
+
+
+def _is_held(since_ns: int, monotonic_ns: int) -> bool:
+    return (monotonic_ns - since_ns) * 1e-9 >= _HOLD_S

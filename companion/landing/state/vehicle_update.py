@@ -65,7 +65,7 @@ def update_vehicle(vehicle: VehicleMemory, inputs: StepInputs, system: System) -
             phases,
             inputs.vehicle.measurements,
             now_ns,
-            drone_is_fixed=inputs.autopilot.receiver.is_fixed,
+            drone=inputs.autopilot.receiver,
             moves=inputs.autopilot.frame_moves,
         ),
     )

@@ -17,9 +17,10 @@ from companion.integrity.frames import (
     with_place_step,
 )
 from companion.landing.state.vehicle_update import update_vehicle
+from companion.situation.phases import Phase
 from link.messages import Vector3
 from link.records import replace
-from tests.companion.world import Flight
+from tests.companion.world import Flight, reached
 
 STEP_NS = 100_000_000
 HOLD_STEPS = 20
@@ -37,9 +38,11 @@ def update(
     monotonic_ns: int,
     *,
     drone_is_fixed: bool = True,
+    has_fix: bool | None = True,
     moves: FrameMoves = NO_MOVES,
 ) -> FixedPhases:
-    return update_fixed_phases(before, measurements, monotonic_ns, drone_is_fixed=drone_is_fixed, moves=moves)
+    drone = Receiver(is_fixed=drone_is_fixed, has_fix=has_fix)
+    return update_fixed_phases(before, measurements, monotonic_ns, drone=drone, moves=moves)
 
 
 def after(steps: list[tuple[float, bool]]) -> FixedPhases:
@@ -185,3 +188,24 @@ def test_the_newest_fix_of_a_step_counts() -> None:
 def test_who_flies_knows_better(configured: ReceiverFrames, *, is_one: bool) -> None:
     told = [(0.3, False)] * 30 if is_one else [(0.01, True)] * 30
     assert are_frames_one(after(told), configured, 29 * STEP_NS) is is_one
+
+
+@given(fixes=st.lists(st.sampled_from([True, False, None]), min_size=1, max_size=80))
+def test_frames_that_are_said_to_be_one_are_so_while_the_drone_has_not_been_without_a_fix_for_the_hold_time(
+    fixes: list[bool | None],
+) -> None:
+    phases = FixedPhases()
+    for step, has_fix in enumerate(fixes):
+        phases = update(phases, [fix(0.3)], step * STEP_NS, drone_is_fixed=False, has_fix=has_fix)
+    is_one = are_frames_one(phases, ReceiverFrames.ONE, (len(fixes) - 1) * STEP_NS)
+    assert is_one is (False not in fixes[-HOLD_STEPS:])
+
+
+@pytest.mark.parametrize(("has_fix", "phase"), [(None, Phase.DESCEND), (True, Phase.DESCEND), (False, Phase.ALIGN)])
+def test_descent_onto_an_unseen_pad_is_broken_off_where_the_drone_has_lost_its_fix(
+    phase: Phase, *, has_fix: bool | None
+) -> None:
+    flight = reached(Phase.DESCEND)
+    flight.view = replace(flight.view, receiver=replace(flight.view.receiver, has_fix=has_fix))
+    flight.run(0.1)
+    assert flight.phase is phase
