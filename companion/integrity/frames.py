@@ -118,18 +118,33 @@ def with_place_step(before: FixedPhases, place_step: tuple[int, float]) -> Fixed
     return replace(before, steps=count, has_vehicle_stepped=before.has_vehicle_stepped or has_stepped)
 
 
+def has_lost_fix(before: FixedPhases, drone: Receiver, monotonic_ns: int) -> bool:
+    """Return whether the drone's receiver is without a fix since now; a short one in between is none.
+
+    Args:
+        before: by the step before.
+        drone: what its receiver says.
+        monotonic_ns: now.
+    """
+    return drone.has_fix is False and not _was_unfixed(before, monotonic_ns)
+
+
 def are_frames_one(phases: FixedPhases, configured: ReceiverFrames, monotonic_ns: int) -> bool:
     """Return whether both receivers' positions can be compared without a sighting."""
     match configured:
         case ReceiverFrames.ONE:
-            is_lost = phases.unfixed_ns is not None and not _is_held(phases.unfixed_ns, monotonic_ns)
-            return not (is_lost or phases.has_stepped)
+            return not (_was_unfixed(phases, monotonic_ns) or phases.has_stepped)
         case ReceiverFrames.APART:
             return False
         case ReceiverFrames.AUTO:
             if phases.since_ns is None or phases.has_stepped:
                 return False
             return _is_held(phases.since_ns, monotonic_ns)
+
+
+def _was_unfixed(phases: FixedPhases, monotonic_ns: int) -> bool:
+    """Return whether the drone's receiver was without a fix lately."""
+    return phases.unfixed_ns is not None and not _is_held(phases.unfixed_ns, monotonic_ns)
 
 
 def _is_held(since_ns: int, monotonic_ns: int) -> bool:

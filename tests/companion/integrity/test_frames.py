@@ -13,9 +13,11 @@ from companion.integrity.frames import (
     FIXED_STD_MAX_M,
     FixedPhases,
     are_frames_one,
+    has_lost_fix,
     update_fixed_phases,
     with_place_step,
 )
+from companion.integrity.sightings import SightingWatch
 from companion.landing.state.vehicle_update import update_vehicle
 from companion.situation.phases import Phase
 from link.messages import Vector3
@@ -209,3 +211,35 @@ def test_descent_onto_an_unseen_pad_is_broken_off_where_the_drone_has_lost_its_f
     flight.view = replace(flight.view, receiver=replace(flight.view.receiver, has_fix=has_fix))
     flight.run(0.1)
     assert flight.phase is phase
+
+
+@pytest.mark.parametrize(
+    ("fixes", "lost_in"),
+    [
+        ([None] * 30, []),
+        ([True, False, False, False], [1]),
+        ([False] * 30, [0]),
+        ([False, True, False], [0]),
+        ([False, *[True] * HOLD_STEPS, False, False], [0, HOLD_STEPS + 1]),
+    ],
+)
+def test_fix_is_lost_once_until_there_was_one_for_the_hold_time(fixes: list[bool | None], lost_in: list[int]) -> None:
+    phases, lost = FixedPhases(), []
+    for step, has_fix in enumerate(fixes):
+        if has_lost_fix(phases, Receiver(has_fix=has_fix), step * STEP_NS):
+            lost.append(step)
+        phases = update(phases, [], step * STEP_NS, has_fix=has_fix)
+    assert lost == lost_in
+
+
+def test_lost_fix_takes_what_sightings_have_told_until_others_agree() -> None:
+    flight = Flight()
+    flight.step()
+    inputs = flight.inputs()
+    view = replace(inputs.autopilot, receiver=Receiver(has_fix=False, knows_geoid=True))
+    confirmed = SightingWatch(is_confirmed=True, was_confirmed=True)
+    vehicle = replace(flight.memory.vehicle, sightings=confirmed)
+    lost = update_vehicle(vehicle, replace(inputs, autopilot=view), flight.system)
+    assert lost.sightings == SightingWatch(was_confirmed=True)
+    again = replace(lost, sightings=confirmed)
+    assert update_vehicle(again, replace(inputs, autopilot=view), flight.system).sightings.is_confirmed
