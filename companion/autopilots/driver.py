@@ -19,6 +19,7 @@ from link.mavlink.requests import ONCE, Retries
 class Receiver(Struct, frozen=True, kw_only=True):
     """What the drone's receiver tells."""
 
+    has_fix: bool | None = None  # of three dimensions; None where nobody tells, or there is no receiver
     is_fixed: bool = False  # its carrier phases, so that it is right to centimetres
     knows_geoid: bool = False  # without it the height of the frame's origin is one above the sea
 

@@ -94,6 +94,12 @@ def has_stepped_with(moves: FrameMoves, known: LocalFrame, frame: LocalFrame) ->
     return hypot(*stepped) > _ONE_STEP_M and _apart_m(_moved_by(known, frame), stepped) <= _ONE_STEP_M
 
 
+def stepped_in_frame_m(moves: FrameMoves) -> tuple[float, float]:
+    """Return by how much the drone's place has stepped horizontally in a frame that stands on the ground, in W."""
+    (east_m, north_m, _), (origin_east_m, origin_north_m, _) = moves.shift_enu_m, moves.origin_shift_enu_m
+    return east_m - origin_east_m, north_m - origin_north_m
+
+
 def _moved_by(known: LocalFrame, frame: LocalFrame) -> Vector3:
     origin = known.origin
     return local_from_geodetic(frame, origin.latitude_rad, origin.longitude_rad, origin.altitude_m)

@@ -64,6 +64,12 @@ def ask(memory: DriverMemory, command: AutopilotCommand, monotonic_ns: int, agai
     return replace(memory, asked_ns=asked_ns), (command,)
 
 
+def was_asked_to_arm(memory: DriverMemory, since_ns: int) -> bool:
+    """Return whether an order to arm was sent since then, monotonic."""
+    last_ns = (memory.asked_ns or {}).get(arm(armed=True))
+    return last_ns is not None and last_ns >= since_ns
+
+
 def ask_to_disarm(memory: DriverMemory, desire: Desire, monotonic_ns: int) -> Requested:
     """Ask plainly; once that was refused, and only with the evidence complete, force it."""
     force = desire.force_disarm and memory.disarm_refusals > 0

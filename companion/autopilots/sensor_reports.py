@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from math import radians
 
-from companion.autopilots.driver import AutopilotView
+from companion.autopilots.driver import AutopilotView, Receiver
 from companion.core.data import OwnState, RangeReading
 from link.frames.geodesy import Datum
 from link.mavlink.clock_map import ClockMap
@@ -53,6 +53,21 @@ def _range_reading(message: Message, clock: ClockMap, own_at: OwnAt) -> RangeRea
     if t_ns is None or not (is_within and looks_down(message)) or message.signal_quality == _INVALID:
         return None
     return RangeReading(t_ns=t_ns, distance_m=message.current_distance * _CM, own=own_at(t_ns))
+
+
+def with_fix(receiver: Receiver, message: Message) -> Receiver:
+    """Return what the receiver tells after a GPS_RAW_INT.
+
+    "No GPS" before anything else is an autopilot's word for having no receiver: something else places that drone.
+    Later it is a receiver that has fallen silent.
+    """
+    if receiver.has_fix is None and message.fix_type == mavlink.GPS_FIX_TYPE_NO_GPS:
+        return receiver
+    return replace(
+        receiver,
+        has_fix=message.fix_type >= mavlink.GPS_FIX_TYPE_3D_FIX,
+        is_fixed=message.fix_type == mavlink.GPS_FIX_TYPE_RTK_FIXED,
+    )
 
 
 _MOVED_RAD = 1e-8  # 6 cm; the field's resolution is 1e-7 degrees, 1 cm

@@ -22,13 +22,14 @@ from companion.autopilots.sensor_reports import (
     geoid_height_m,
     is_same,
     origin_above_sea,
+    with_fix,
     with_sensor,
 )
 from companion.core.data import OwnState
 from link.frames.geodesy import Datum, LocalFrame, Projection
 from link.frames.rotations import enu_from_ned, flu_from_frd, normalized, quaternion_enu_flu_from_ned_frd
 from link.mavlink.clock_map import ClockMap
-from link.mavlink.dialect import Message, mavlink
+from link.mavlink.dialect import Message
 from link.messages import Quaternion, Vector3
 from link.program.text import printable
 from link.records import replace
@@ -103,8 +104,7 @@ def update_state(state: AutopilotState, message: Message, clock: ClockMap, drive
         case "GPS_GLOBAL_ORIGIN":
             state = _place_origin(_hear_origin(state, origin_above_sea(message)), driver.projection)
         case "GPS_RAW_INT":
-            is_fixed = message.fix_type == mavlink.GPS_FIX_TYPE_RTK_FIXED
-            view = replace(state.view, receiver=replace(state.view.receiver, is_fixed=is_fixed))
+            view = replace(state.view, receiver=with_fix(state.view.receiver, message))
             state = _place_origin(_hear_geoid(replace(state, view=view), message), driver.projection)
         case "DISTANCE_SENSOR" | "BATTERY_STATUS":
             state = replace(state, view=with_sensor(state.view, message, clock, state.own_at))

@@ -1,14 +1,4 @@
-"""Whether two receivers place things in one frame, and whether what the drone sees of the pad agrees with them; pure.
-
-Each receiver states its error within its own frame. How far these are apart neither states: centimetres where both are
-corrected by one base station or network, and metres without corrections. Phases that are fixed on both are taken for
-corrections of one source, for that is how they are flown; who has two base stations says so (`receiver_frames`).
-Otherwise only sightings of the pad tell the offset, which the estimate has as unknown until then.
-
-A fixed carrier phase errs by a quarter of its wavelength at most, which is what reflections do to it
-(Hofmann-Wellenhof, Lichtenegger and Collins, "GPS: Theory and Practice", 5th edition, multipath): who states more has
-not fixed it. One that steps by more than two such errors has been fixed wrongly, before or after. Until it has been
-fixed anew nobody knows where it is.
+"""Whether what the drone sees of the pad agrees with both receivers, and with itself; pure.
 
 A sighting places the pad in the drone's frame, a fix in the vehicle's. Where both have one frame, a pad that is seen
 farther from its told place than both promise means that one of them is wrong: a detector that sees another pattern, or
@@ -21,89 +11,18 @@ own frame would look the same, but the estimate steps with that.
 """
 
 import math
-from collections.abc import Sequence
 
 from msgspec import Struct
 
 from companion.config.companion import CompanionConfig
 from companion.config.integrity import ReceiverFrames
-from companion.core.data import Measurement, Quantity
+from companion.core.data import Quantity
+from companion.integrity.frames import FIXED_STD_MAX_M
 from companion.situation.situation import Situation
 from companion.vehicle.estimator import BufferHealth
 from companion.vehicle.pad import PadPath
 from companion.vehicle.pad_reach import cone_radius_at_pad_m
 from link.records import replace
-
-_LIGHT_M_S = 299_792_458.0
-_L1_HZ = 1575.42e6
-FIXED_STD_MAX_M = 0.25 * _LIGHT_M_S / _L1_HZ
-"""Horizontal, that a receiver with fixed phases states at most: 0.048 m."""
-
-_HOLD_S = 2.0  # two of the autopilot's reports of its receiver
-
-
-class FixedPhases(Struct, frozen=True, kw_only=True):
-    """What both receivers say of their phases.
-
-    Attributes:
-        vehicle_std_m: that the newest fix of the vehicle states horizontally, None before the first.
-        since_ns: monotonic, since when both have had fixed phases without a break; None while one has not.
-        steps: of the vehicle's place, when they were last counted.
-        has_stepped: by more than fixed phases err, while both had them.
-    """
-
-    vehicle_std_m: float | None = None
-    since_ns: int | None = None
-    steps: int = 0
-    has_stepped: bool = False
-
-
-def update_fixed_phases(
-    before: FixedPhases, measurements: Sequence[Measurement], monotonic_ns: int, *, drone_is_fixed: bool
-) -> FixedPhases:
-    """Return what both receivers say by now.
-
-    Args:
-        before: by the step before.
-        measurements: of the vehicle since then.
-        monotonic_ns: now.
-        drone_is_fixed: the drone's receiver has fixed phases, as its autopilot tells.
-    """
-    fixes = [one for one in measurements if one.quantity is Quantity.POSITION]
-    std_m = before.vehicle_std_m
-    if fixes:
-        newest = max(fixes, key=lambda fix: fix.t_ns)
-        std_m = max(newest.covariance.diagonal().tolist()[:2]) ** 0.5
-    vehicle_is_fixed = std_m is not None and std_m <= FIXED_STD_MAX_M
-    if not (vehicle_is_fixed and drone_is_fixed):
-        # That the drone's receiver is fixed anew says nothing of the vehicle's, which has stepped.
-        has_stepped = before.has_stepped and vehicle_is_fixed
-        return FixedPhases(vehicle_std_m=std_m, steps=before.steps, has_stepped=has_stepped)
-    since_ns = monotonic_ns if before.since_ns is None else before.since_ns
-    return replace(before, vehicle_std_m=std_m, since_ns=since_ns)
-
-
-def with_place_step(before: FixedPhases, place_step: tuple[int, float]) -> FixedPhases:
-    """Return what both receivers say, and whether the vehicle's place has stepped, as `BufferHealth` has it."""
-    count, moved_m = place_step
-    if count == before.steps:
-        return before
-    has_stepped = count > before.steps and before.since_ns is not None and moved_m > 2.0 * FIXED_STD_MAX_M
-    return replace(before, steps=count, has_stepped=before.has_stepped or has_stepped)
-
-
-def are_frames_one(phases: FixedPhases, configured: ReceiverFrames, monotonic_ns: int) -> bool:
-    """Return whether both receivers' positions can be compared without a sighting."""
-    match configured:
-        case ReceiverFrames.ONE:
-            return not phases.has_stepped
-        case ReceiverFrames.APART:
-            return False
-        case ReceiverFrames.AUTO:
-            if phases.since_ns is None or phases.has_stepped:
-                return False
-            return (monotonic_ns - phases.since_ns) * 1e-9 >= _HOLD_S
-
 
 _STDS = 3.0
 _CONFIRMING_MIN = 5  # of a camera that sees the pad at 5 Hz, the slowest that is worth following

@@ -14,6 +14,7 @@ from companion.landing.sortie.events import SORTIE_CONDITIONS, decide_sortie, st
 from companion.landing.sortie.phases import begin_phase_of_sortie, clear_of_vehicle, take_order
 from companion.landing.state.memory import NOTHING_HELD, ControlMemory, ModelMemory, Progress, StepMemory
 from companion.landing.state.step_data import StepInputs
+from companion.landing.steering.following_height import climb_m, too_low_m
 from companion.landing.steering.targets import stopping_point
 from companion.landing.steering.virtual_model import Tracking
 from companion.planning.guidance import ReferenceState
@@ -98,7 +99,7 @@ def _enter(memory: StepMemory, event: Event, cause: Cause, situation: Situation,
     anchor = places.anchor_enu_m
     if phase is Phase.WAITING and event is Event.START and anchor is not None:
         # It waits where it hovers, unless that is too low.
-        waiting_point = anchor + np.array([0.0, 0.0, _too_low_m(float(anchor[2]), situation, config)])
+        waiting_point = anchor + np.array([0.0, 0.0, too_low_m(float(anchor[2]), situation, config)])
         return replace(memory, places=replace(places, waiting_point_enu_m=waiting_point))
     if phase in (Phase.TAKEOFF, Phase.ON_DECK):
         return _begin_flight(memory, situation, config)
@@ -157,22 +158,6 @@ def _escape(model: ModelMemory, situation: Situation, config: CompanionConfig) -
     return replace(model, reference=escaping, plan=None, guidance=None)
 
 
-def _climb_m(height_enu_m: float, situation: Situation, config: CompanionConfig) -> float:
-    """Return how far the waiting point is above a drone at this height in W: one that flies may wait higher already."""
-    flies = situation.autopilot.armed and situation.autopilot.landed is False
-    return _too_low_m(height_enu_m, situation, config) if flies else config.takeoff.waiting_height_m
-
-
-def _too_low_m(height_enu_m: float, situation: Situation, config: CompanionConfig) -> float:
-    """Return how far below the height of waiting a drone at this height in W is, 0 where it is not.
-
-    Where no range finder has told the ground, it is taken to be where the autopilot's local frame began.
-    """
-    wait_m, ground = config.takeoff.waiting_height_m, situation.below.ground_enu_m
-    ground_m = 0.0 if ground is None else float(ground[2])
-    return min(max(ground_m + situation.feet_offset_m + wait_m - height_enu_m, 0.0), wait_m)
-
-
 def _begin_flight(memory: StepMemory, situation: Situation, config: CompanionConfig) -> StepMemory:
     """Start the virtual model where the drone is, and place the waiting point above it."""
     drone = situation.drone
@@ -180,7 +165,6 @@ def _begin_flight(memory: StepMemory, situation: Situation, config: CompanionCon
         nowhere = replace(memory.progress, phase=Phase.IDLE, cause=Cause(Reason.DRONE_UNKNOWN))
         return replace(memory, progress=nowhere)
     position, zero = drone.position_enu_m, np.zeros(3)
-    climb_m = _climb_m(float(position[2]), situation, config)
     model = replace(
         memory.model,
         reference=ReferenceState(position_enu_m=position, velocity_enu_m_s=zero, acceleration_enu_m_s2=zero),
@@ -190,7 +174,7 @@ def _begin_flight(memory: StepMemory, situation: Situation, config: CompanionCon
         guidance=None,
         yaw_setpoint_rad=drone.yaw_rad,
     )
-    waiting_point = position + np.array([0.0, 0.0, climb_m])
+    waiting_point = position + np.array([0.0, 0.0, climb_m(float(position[2]), situation, config)])
     return replace(
         memory,
         control=ControlMemory(driver=memory.control.driver),

@@ -2,6 +2,7 @@
 
 import math
 
+from companion.autopilots.messages import was_asked_to_arm
 from companion.config.companion import CompanionConfig
 from companion.config.planning import LandingStyle
 from companion.core.reasons import Cause, Reason
@@ -126,14 +127,22 @@ def _time_limit(progress: Progress, control: ControlMemory, s: Situation, config
     if progress.phase is Phase.TAKEOFF and in_phase_s > config.takeoff.refused_after_s:
         if not control.was_in_control:
             return Event.REFUSED, Cause(Reason.CONTROL_REFUSED)
-        if not s.autopilot.armed:
-            return Event.REFUSED, Cause(Reason.ARMING_REFUSED, (s.autopilot.refusal or "it said no reason",))
+        refused = arming_refused(progress, control, s)
+        if refused is not None:
+            return refused
     limit_s = _longest_s(progress.phase, config)
     waits_s = min(waited_s(progress, s.monotonic_ns), config.descent.risk.wait_max_s)
     if limit_s is not None and in_phase_s - waits_s > limit_s:
         not_placed = why_unplaced(s) if progress.phase is Phase.ALIGN else None
         return Event.TIME_LIMIT, not_placed or Cause(TOO_LONG[progress.phase], (limit_s,))
     return None
+
+
+def arming_refused(progress: Progress, control: ControlMemory, s: Situation) -> Decision | None:
+    """Return that the autopilot does not arm although this phase has ordered it to; None where it has not."""
+    if s.autopilot.armed or not was_asked_to_arm(control.driver, progress.since_ns):
+        return None
+    return Event.REFUSED, Cause(Reason.ARMING_REFUSED, (s.autopilot.refusal or "it said no reason",))
 
 
 def _longest_s(phase: Phase, config: CompanionConfig) -> float | None:

@@ -20,7 +20,7 @@ from companion.landing.decisions.conditions import (
     tell_taken,
 )
 from companion.landing.state.memory import Held
-from companion.landing.steering.following_height import chase_floor_m, vague_height_m
+from companion.landing.steering.following_height import chase_floor_m, climb_m, vague_height_m
 from companion.situation.phases import Phase
 from companion.situation.situation import Situation
 from companion.vehicle.pad_reach import is_too_small
@@ -30,6 +30,7 @@ SPEED_SHARE_MIN = 1.15
 """Of the vehicle's speed: with less there is nothing to catch up with, and no landing is begun."""
 
 _RECEIVER_TOLD_S = 3.0  # it says so once a second
+_TOLD_M = 0.1  # what heights are told to
 _ROUNDING = 1e-6
 _BEFORE_A_FLIGHT = frozenset({Phase.IDLE, Phase.SECURED, Phase.PILOT, Phase.HOLD, Phase.WAITING})
 _BEFORE_A_CHASE = _BEFORE_A_FLIGHT | {Phase.ABORT}
@@ -141,24 +142,31 @@ def _elsewhere(s: Situation, _: CompanionConfig) -> Cause:
     return Cause(Reason.ROAD_ELSEWHERE, (told,))
 
 
-def _hover_height_m(s: Situation, height_m: float, c: CompanionConfig) -> float:
-    """Return how high above the pad the drone hovers, or will after its take-off."""
-    stands = not s.autopilot.armed or s.autopilot.landed is not False
-    return height_m + (c.takeoff.waiting_height_m if stands else 0.0)
+def _hover_height_m(s: Situation, c: CompanionConfig) -> float:
+    """Return how high above the pad the drone hovers, or will once it has climbed to wait."""
+    if s.approach is None or s.drone is None:
+        return 0.0
+    return s.approach.height_m + climb_m(float(s.drone.position_enu_m[2]), s, c)
 
 
 def _is_high(s: Situation, c: CompanionConfig) -> bool:
     if s.approach is None or is_fix_old(s, c) or s.approach.distance_m > c.integrity.ground_within_m:
         return False
     unsure_m = 0.0 if s.pad is None else vague_height_m(s.pad, c)
-    return _hover_height_m(s, s.approach.height_m, c) + unsure_m < chase_floor_m(c)
+    return _hover_height_m(s, c) + unsure_m < chase_floor_m(c)
 
 
 def _high(s: Situation, c: CompanionConfig) -> Cause:
-    height_m = 0.0 if s.approach is None else _hover_height_m(s, s.approach.height_m, c)
-    more_m = math.ceil(10.0 * (chase_floor_m(c) - height_m) - _ROUNDING) / 10.0
-    told_m = math.ceil(10.0 * chase_floor_m(c) - _ROUNDING) / 10.0
-    return Cause(Reason.ROOF_TOO_HIGH, (told_m - more_m, told_m, more_m))
+    more_m = math.ceil((chase_floor_m(c) - _hover_height_m(s, c)) / _TOLD_M - _ROUNDING) * _TOLD_M
+    told_m = math.ceil(chase_floor_m(c) / _TOLD_M - _ROUNDING) * _TOLD_M
+    # A drone that hovers higher than the setting has it climb is not raised by it.
+    is_set = s.drone is None or climb_m(float(s.drone.position_enu_m[2]) - _TOLD_M, s, c) > 0.0
+    told = (
+        f"raise takeoff.waiting_height_m by {more_m:.1f} m or hover higher"
+        if is_set
+        else f"hover {more_m:.1f} m higher"
+    )
+    return Cause(Reason.ROOF_TOO_HIGH, (told_m - more_m, told_m, told))
 
 
 # An estimate that has just begun jumps: what is said of the vehicle must hold for a while.

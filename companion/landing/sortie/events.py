@@ -18,7 +18,7 @@ from companion.landing.decisions.conditions import (
     is_fix_old,
 )
 from companion.landing.decisions.entries import Decision
-from companion.landing.decisions.events import TOO_LONG
+from companion.landing.decisions.events import TOO_LONG, arming_refused
 from companion.landing.decisions.feasibility import EMPTY
 from companion.landing.sortie.over_vehicle import ON_ROOF_M, SPEED_SHARE, WAY_SHARE, is_deck_quiet, stands_on_deck
 from companion.landing.state.memory import ControlMemory, Progress
@@ -53,8 +53,8 @@ LOST = (
 """The vehicle is not heard, cannot be believed, or cannot be followed."""
 
 OWN_LOST = (
-    Condition(reason=Reason.OWN_POSITION_OLD, phases=_TOGETHER, is_true=is_drone_unknown),
-    Condition(reason=Reason.OWN_ATTITUDE_OLD, phases=_TOGETHER, is_true=is_attitude_unknown),
+    Condition(reason=Reason.OWN_POSITION_OLD, phases=_TOGETHER | {Phase.ON_DECK}, is_true=is_drone_unknown),
+    Condition(reason=Reason.OWN_ATTITUDE_OLD, phases=_TOGETHER | {Phase.ON_DECK}, is_true=is_attitude_unknown),
 )
 """Nobody knows where the drone is."""
 _OWN_LOST_REASONS = frozenset(condition.reason for condition in OWN_LOST)
@@ -156,7 +156,7 @@ def stay_out(sortie: SortieMemory, progress: Progress, decision: Decision) -> De
 def _leave_deck(
     sortie: SortieMemory, progress: Progress, control: ControlMemory, s: Situation, config: CompanionConfig
 ) -> Decision | None:
-    lost = first_cause((*LOST, EMPTY), progress.held, s, config)
+    lost = first_cause((*LOST, *OWN_LOST, EMPTY), progress.held, s, config)
     if lost is not None:
         return Event.CALLED_OFF, lost
     launch, view = config.sortie.launch, s.autopilot
@@ -164,9 +164,8 @@ def _leave_deck(
     if in_phase_s > config.takeoff.refused_after_s and not control.was_in_control:
         return Event.REFUSED, Cause(Reason.CONTROL_REFUSED)
     if in_phase_s > launch.time_limit_s:
-        if sortie.quiet_since_ns is not None and not view.armed:
-            return Event.REFUSED, Cause(Reason.ARMING_REFUSED, (view.refusal or "it said no reason",))
-        return Event.TIME_LIMIT, Cause(Reason.DECK_RESTLESS, (launch.time_limit_s,))
+        refused = None if sortie.quiet_since_ns is None else arming_refused(progress, control, s)
+        return refused or (Event.TIME_LIMIT, Cause(Reason.DECK_RESTLESS, (launch.time_limit_s,)))
     is_ready = view.armed and view.in_control and is_quiet_for_long(sortie, s, config)
     return (Event.DECK_QUIET, Cause(Reason.DECK_QUIET)) if is_ready else None
 

@@ -16,7 +16,8 @@ from companion.core.data import Array
 from companion.core.reasons import Cause, Reason
 from companion.forecast.drivers import Drivers
 from companion.forecast.gusts import Gusts
-from companion.integrity.sightings import FixedPhases, SightingWatch
+from companion.integrity.frames import FixedPhases
+from companion.integrity.sightings import SightingWatch
 from companion.integrity.stamps import FixStamps
 from companion.integrity.vehicle_data import Contradictions, CourseWatch
 from companion.landing.steering.flown_plan import FlownPlan

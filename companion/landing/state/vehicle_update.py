@@ -5,15 +5,8 @@ import math
 import numpy as np
 
 from companion.core.data import Array, Forecast, Measurement, Quantity, RangeReading
-from companion.integrity.sightings import (
-    SightingWatch,
-    are_frames_one,
-    forget_agreement,
-    forget_step,
-    update_fixed_phases,
-    update_sightings,
-    with_place_step,
-)
+from companion.integrity.frames import are_frames_one, has_lost_fix, update_fixed_phases, with_place_step
+from companion.integrity.sightings import SightingWatch, forget_agreement, forget_step, update_sightings
 from companion.integrity.stamps import FixStamps, update_fix_stamps
 from companion.integrity.vehicle_data import Contradictions, update_contradictions, without_contradicted_heading
 from companion.landing.state.memory import VehicleMemory, between
@@ -55,6 +48,8 @@ def update_vehicle(vehicle: VehicleMemory, inputs: StepInputs, system: System) -
         contradictions = update_contradictions(contradictions, health, now_ns)
         sightings = update_sightings(sightings, health, now_ns, system.config)
         phases = with_place_step(phases, health.place_step)
+    if has_lost_fix(phases, inputs.autopilot.receiver, now_ns):
+        sightings = forget_agreement(sightings)  # dead reckoning takes the drone away from where it has seen the pad
     return replace(
         vehicle,
         estimator=estimator,
@@ -69,7 +64,11 @@ def update_vehicle(vehicle: VehicleMemory, inputs: StepInputs, system: System) -
         contradictions=contradictions,
         sightings=sightings,
         phases=update_fixed_phases(
-            phases, inputs.vehicle.measurements, now_ns, drone_is_fixed=inputs.autopilot.receiver.is_fixed
+            phases,
+            inputs.vehicle.measurements,
+            now_ns,
+            drone=inputs.autopilot.receiver,
+            moves=inputs.autopilot.frame_moves,
         ),
     )
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from companion.config.companion import CompanionConfig
 from companion.planning.guidance import ReferenceState
+from companion.situation.situation import Situation
 from companion.vehicle.pad import PadPath
 from companion.vehicle.pad_reach import is_unseen, is_vague
 
@@ -74,3 +75,19 @@ def waiting_rise_m(height_m: float, pad: PadPath, config: CompanionConfig) -> fl
     """
     lacking_m, unsure_m = chase_floor_m(config) - height_m, vague_height_m(pad, config)
     return min(lacking_m + config.takeoff.reached_distance_m, unsure_m) if 0.0 < lacking_m < unsure_m else 0.0
+
+
+def climb_m(height_enu_m: float, s: Situation, config: CompanionConfig) -> float:
+    """Return how far the waiting point is above a drone at this height in W: one that flies may wait higher already."""
+    flies = s.autopilot.armed and s.autopilot.landed is False
+    return too_low_m(height_enu_m, s, config) if flies else config.takeoff.waiting_height_m
+
+
+def too_low_m(height_enu_m: float, s: Situation, config: CompanionConfig) -> float:
+    """Return how far below the height of waiting a drone at this height in W is, 0 where it is not.
+
+    Where no range finder has told the ground, it is taken to be where the autopilot's local frame began.
+    """
+    wait_m, ground = config.takeoff.waiting_height_m, s.below.ground_enu_m
+    ground_m = 0.0 if ground is None else float(ground[2])
+    return min(max(ground_m + s.feet_offset_m + wait_m - height_enu_m, 0.0), wait_m)

@@ -290,6 +290,26 @@ def test_receiver_tells_whether_its_phases_are_fixed(fix: int, *, is_fixed: bool
     assert not _hear(_receiver(5, 410_000, 457_300), state=state).view.receiver.is_fixed
 
 
+@pytest.mark.parametrize(
+    ("fixes", "has_fix"),
+    [
+        ((), None),
+        ((0,), None),  # has no receiver
+        ((0, 0), None),
+        ((1,), False),
+        ((2,), False),
+        ((3,), True),
+        ((6,), True),
+        ((3, 0), False),  # has fallen silent
+        ((1, 0), False),
+        ((0, 3, 1), False),
+    ],
+)
+def test_receiver_tells_whether_it_has_a_fix(fixes: tuple[int, ...], *, has_fix: bool | None) -> None:
+    state = _hear(*(_receiver(fix, 410_000, 457_300) for fix in fixes))
+    assert state.view.receiver.has_fix is has_fix
+
+
 OFFBOARD, LOITER, GUIDED, RTL = 0x0006_0000, 0x0304_0000, 4, 6
 
 

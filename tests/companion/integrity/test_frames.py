@@ -5,15 +5,24 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from companion.autopilots.driver import Receiver
+from companion.autopilots.frame_moves import NO_MOVES, FrameMoves
 from companion.config.integrity import ReceiverFrames
 from companion.core.data import Measurement, Quantity
-from companion.integrity.sightings import (
+from companion.integrity.frames import (
     FIXED_STD_MAX_M,
     FixedPhases,
     are_frames_one,
+    has_lost_fix,
     update_fixed_phases,
     with_place_step,
 )
+from companion.integrity.sightings import SightingWatch
+from companion.landing.state.vehicle_update import update_vehicle
+from companion.situation.phases import Phase
+from link.messages import Vector3
+from link.records import replace
+from tests.companion.world import Flight, reached
 
 STEP_NS = 100_000_000
 HOLD_STEPS = 20
@@ -25,11 +34,24 @@ def fix(std_m: float, t_ns: int = 0, quantity: Quantity = Quantity.POSITION) -> 
     return Measurement(t_ns=t_ns, quantity=quantity, value=np.zeros(3), covariance=covariance)
 
 
+def update(
+    before: FixedPhases,
+    measurements: list[Measurement],
+    monotonic_ns: int,
+    *,
+    drone_is_fixed: bool = True,
+    has_fix: bool | None = True,
+    moves: FrameMoves = NO_MOVES,
+) -> FixedPhases:
+    drone = Receiver(is_fixed=drone_is_fixed, has_fix=has_fix)
+    return update_fixed_phases(before, measurements, monotonic_ns, drone=drone, moves=moves)
+
+
 def after(steps: list[tuple[float, bool]]) -> FixedPhases:
     """What is known after a fix of such a deviation, and such a state of the drone's receiver, in each step."""
     phases = FixedPhases()
     for step, (std_m, drone_is_fixed) in enumerate(steps):
-        phases = update_fixed_phases(phases, [fix(std_m)], step * STEP_NS, drone_is_fixed=drone_is_fixed)
+        phases = update(phases, [fix(std_m)], step * STEP_NS, drone_is_fixed=drone_is_fixed)
     return phases
 
 
@@ -56,7 +78,7 @@ def test_phases_of_a_vehicle_that_states_more_than_a_quarter_of_a_wavelength_are
 def test_a_step_without_fixes_and_other_measurements_change_nothing() -> None:
     phases = after([(0.01, True)] * 30)
     for measurements in ([], [fix(5.0, quantity=Quantity.PAD)]):
-        assert update_fixed_phases(phases, measurements, 10**10, drone_is_fixed=True) == phases
+        assert update(phases, measurements, 10**10) == phases
 
 
 FIXED, LATER_NS = [(0.01, True)] * 30, 100 * STEP_NS
@@ -69,22 +91,87 @@ def test_vehicle_that_steps_by_more_than_two_fixed_phases_err_has_no_frame_any_m
 ) -> None:
     stepped = with_place_step(after(FIXED), (1, moved_m))
     assert are_frames_one(stepped, configured, LATER_NS) is is_one
-    going_on = update_fixed_phases(with_place_step(stepped, (1, moved_m)), [fix(0.01)], LATER_NS, drone_is_fixed=True)
+    going_on = update(with_place_step(stepped, (1, moved_m)), [fix(0.01)], LATER_NS)
     assert are_frames_one(going_on, configured, 2 * LATER_NS) is is_one
 
 
 def test_receiver_that_has_fixed_its_phases_anew_has_a_frame_again() -> None:
     phases = with_place_step(after(FIXED), (1, 5.0))
     for step, std_m in enumerate([0.3, *[0.01] * 30]):
-        phases = update_fixed_phases(phases, [fix(std_m)], LATER_NS + step * STEP_NS, drone_is_fixed=True)
+        phases = update(phases, [fix(std_m)], LATER_NS + step * STEP_NS)
     assert are_frames_one(phases, AUTO, LATER_NS + 30 * STEP_NS)
 
 
 def test_drones_receiver_that_is_fixed_anew_vouches_for_no_vehicle_that_has_stepped() -> None:
     phases = with_place_step(after(FIXED), (1, 5.0))
     for step, drone_is_fixed in enumerate([False, *[True] * 30]):
-        phases = update_fixed_phases(phases, [fix(0.01)], LATER_NS + step * STEP_NS, drone_is_fixed=drone_is_fixed)
+        phases = update(phases, [fix(0.01)], LATER_NS + step * STEP_NS, drone_is_fixed=drone_is_fixed)
     assert not are_frames_one(phases, AUTO, LATER_NS + 30 * STEP_NS)
+
+
+def moved(shift_enu_m: Vector3, origin_m: Vector3 = (0.0, 0.0, 0.0), std_m: float = 0.0) -> FrameMoves:
+    """The drone's place has stepped so far, and its origin has moved."""
+    return FrameMoves(shift_enu_m=shift_enu_m, origin_shift_enu_m=origin_m, shift_variance_m2=std_m**2)
+
+
+@pytest.mark.parametrize("configured", [AUTO, ReceiverFrames.ONE])
+@pytest.mark.parametrize(
+    ("moves", "is_one"),
+    [
+        (moved((0.05, -0.06, 0.0)), True),
+        (moved((0.09, -0.08, 0.0)), False),
+        (moved((-0.6, 0.4, 0.0), std_m=0.07), False),
+        (moved((0.15, -0.13, 0.0), std_m=0.07), True),  # the drone may have flown so far
+        (moved((0.0, 0.0, 3.0)), True),
+        (moved((-2.3, 0.9, 0.4), (-2.22, 0.86, 0.4), std_m=0.07), True),
+        (moved((-2.3, 0.9, 0.4), (-2.3, 0.3, 0.4), std_m=0.07), False),
+    ],
+)
+def test_drone_that_steps_by_more_than_two_fixed_phases_err_and_its_origin_does_has_no_frame_any_more(
+    configured: ReceiverFrames, moves: FrameMoves, *, is_one: bool
+) -> None:
+    stepped = update(after(FIXED), [fix(0.01)], LATER_NS, moves=moves)
+    assert are_frames_one(stepped, configured, LATER_NS) is is_one
+    assert are_frames_one(update(stepped, [], LATER_NS, moves=moves), configured, 2 * LATER_NS) is is_one
+
+
+def test_place_that_steps_before_its_origin_does_has_a_frame_again_with_it() -> None:
+    step_m = (3.0, -1.2, 0.0)
+    stepped = update(after(FIXED), [], LATER_NS, moves=moved(step_m))
+    told = update(stepped, [], LATER_NS, moves=moved(step_m, step_m))
+    assert (stepped.has_stepped, told.has_stepped) == (True, False)
+
+
+@pytest.mark.parametrize(("anew", "is_one"), [("drone", True), ("vehicle", False)])
+def test_only_the_receiver_that_has_stepped_vouches_for_itself_by_being_fixed_anew(anew: str, *, is_one: bool) -> None:
+    moves = moved((0.5, -0.4, 0.0))
+    phases = update(after(FIXED), [], LATER_NS, moves=moves)
+    std_m = 0.3 if anew == "vehicle" else 0.01
+    phases = update(phases, [fix(std_m)], LATER_NS, drone_is_fixed=anew != "drone", moves=moves)
+    for step in range(30):
+        phases = update(phases, [fix(0.01)], LATER_NS + step * STEP_NS, moves=moves)
+    assert are_frames_one(phases, AUTO, LATER_NS + 30 * STEP_NS) is is_one
+
+
+def test_drone_that_steps_before_both_have_fixed_phases_has_a_frame() -> None:
+    phases = FixedPhases()
+    for step in range(30):
+        moves = moved((0.1 * min(step, 8), 0.0, 0.0))
+        phases = update(phases, [fix(0.3 if step < 9 else 0.01)], step * STEP_NS, moves=moves)
+    assert are_frames_one(phases, AUTO, 29 * STEP_NS)
+
+
+@pytest.mark.parametrize("step_m", [0.0, 0.7])
+def test_step_of_the_drones_place_in_flight_takes_the_frames_apart(step_m: float) -> None:
+    flight = Flight()
+    vehicle = flight.memory.vehicle
+    for step, east_m in enumerate([0.0, 0.0, step_m]):
+        inputs = flight.inputs()
+        moves = FrameMoves(origin_count=1, shift_enu_m=(east_m, 0.0, 0.0), stepped_ns=inputs.t_ns)
+        view = replace(inputs.autopilot, receiver=Receiver(is_fixed=True, knows_geoid=True), frame_moves=moves)
+        told = replace(inputs.vehicle, measurements=(fix(0.01, inputs.t_ns + step),))
+        vehicle = update_vehicle(vehicle, replace(inputs, autopilot=view, vehicle=told), flight.system)
+    assert vehicle.phases.has_stepped is (step_m > 0.0)
 
 
 def test_step_of_phases_that_are_not_fixed_and_a_filter_that_counts_anew_are_none() -> None:
@@ -96,10 +183,63 @@ def test_step_of_phases_that_are_not_fixed_and_a_filter_that_counts_anew_are_non
 
 def test_the_newest_fix_of_a_step_counts() -> None:
     fixes = [fix(0.01, t_ns=2), fix(0.3, t_ns=1)]
-    assert update_fixed_phases(FixedPhases(), fixes, 0, drone_is_fixed=True).since_ns == 0
+    assert update(FixedPhases(), fixes, 0).since_ns == 0
 
 
 @pytest.mark.parametrize(("configured", "is_one"), [(ReceiverFrames.ONE, True), (ReceiverFrames.APART, False)])
 def test_who_flies_knows_better(configured: ReceiverFrames, *, is_one: bool) -> None:
     told = [(0.3, False)] * 30 if is_one else [(0.01, True)] * 30
     assert are_frames_one(after(told), configured, 29 * STEP_NS) is is_one
+
+
+@given(fixes=st.lists(st.sampled_from([True, False, None]), min_size=1, max_size=80))
+def test_frames_that_are_said_to_be_one_are_so_while_the_drone_has_not_been_without_a_fix_for_the_hold_time(
+    fixes: list[bool | None],
+) -> None:
+    phases = FixedPhases()
+    for step, has_fix in enumerate(fixes):
+        phases = update(phases, [fix(0.3)], step * STEP_NS, drone_is_fixed=False, has_fix=has_fix)
+    is_one = are_frames_one(phases, ReceiverFrames.ONE, (len(fixes) - 1) * STEP_NS)
+    assert is_one is (False not in fixes[-HOLD_STEPS:])
+
+
+@pytest.mark.parametrize(("has_fix", "phase"), [(None, Phase.DESCEND), (True, Phase.DESCEND), (False, Phase.ALIGN)])
+def test_descent_onto_an_unseen_pad_is_broken_off_where_the_drone_has_lost_its_fix(
+    phase: Phase, *, has_fix: bool | None
+) -> None:
+    flight = reached(Phase.DESCEND)
+    flight.view = replace(flight.view, receiver=replace(flight.view.receiver, has_fix=has_fix))
+    flight.run(0.1)
+    assert flight.phase is phase
+
+
+@pytest.mark.parametrize(
+    ("fixes", "lost_in"),
+    [
+        ([None] * 30, []),
+        ([True, False, False, False], [1]),
+        ([False] * 30, [0]),
+        ([False, True, False], [0]),
+        ([False, *[True] * HOLD_STEPS, False, False], [0, HOLD_STEPS + 1]),
+    ],
+)
+def test_fix_is_lost_once_until_there_was_one_for_the_hold_time(fixes: list[bool | None], lost_in: list[int]) -> None:
+    phases, lost = FixedPhases(), []
+    for step, has_fix in enumerate(fixes):
+        if has_lost_fix(phases, Receiver(has_fix=has_fix), step * STEP_NS):
+            lost.append(step)
+        phases = update(phases, [], step * STEP_NS, has_fix=has_fix)
+    assert lost == lost_in
+
+
+def test_lost_fix_takes_what_sightings_have_told_until_others_agree() -> None:
+    flight = Flight()
+    flight.step()
+    inputs = flight.inputs()
+    view = replace(inputs.autopilot, receiver=Receiver(has_fix=False, knows_geoid=True))
+    confirmed = SightingWatch(is_confirmed=True, was_confirmed=True)
+    vehicle = replace(flight.memory.vehicle, sightings=confirmed)
+    lost = update_vehicle(vehicle, replace(inputs, autopilot=view), flight.system)
+    assert lost.sightings == SightingWatch(was_confirmed=True)
+    again = replace(lost, sightings=confirmed)
+    assert update_vehicle(again, replace(inputs, autopilot=view), flight.system).sightings.is_confirmed

@@ -201,12 +201,20 @@ def test_start_beside_a_roof_that_is_too_high_says_how_much_higher_to_wait() -> 
     )
 
 
-def test_heights_that_are_told_differ_by_what_they_are_to_be_raised() -> None:
+@pytest.mark.parametrize(
+    ("above_waiting_m", "advice"),
+    [(0.06, "raise takeoff.waiting_height_m by 0.1 m or hover higher"), (0.2, "hover 0.1 m higher")],
+)
+def test_heights_that_are_told_differ_by_what_they_are_to_be_raised(above_waiting_m: float, advice: str) -> None:
     """Waiting 1.16 m above a pad is not to be told as the 1.2 m that are needed."""
-    facts = changed(situation(1.16), armed=True, landed=False)
+    facts = situation(1.16)
+    assert facts.drone is not None
+    feet_m = float(facts.drone.position_enu_m[2]) - facts.feet_offset_m
+    ground = np.array([0.0, 0.0, feet_m - above_waiting_m - CONFIG.takeoff.waiting_height_m])
+    facts = changed(facts, armed=True, landed=False, ground_enu_m=ground)
     told = obstacle({one.reason: 0 for one in OBSTACLES if one.is_true(facts, CONFIG)}, facts, CONFIG)
     assert told is not None
-    assert sentence(told).startswith("waiting 1.1 m above the pad, 1.2 m are needed: raise")
+    assert sentence(told) == f"waiting 1.1 m above the pad, 1.2 m are needed: {advice}"
 
 
 @pytest.mark.slow

@@ -13,8 +13,8 @@ from companion.config.estimation import EstimatorKind
 from companion.config.integrity import IntegrityConfig, ReceiverFrames
 from companion.core.data import Measurement, Quantity
 from companion.core.reasons import Cause, Reason
+from companion.integrity.frames import FIXED_STD_MAX_M
 from companion.integrity.sightings import (
-    FIXED_STD_MAX_M,
     SightingWatch,
     do_sightings_disagree,
     forget_agreement,

@@ -13,7 +13,7 @@ from companion.landing.steering.following_height import chase_floor_m
 from companion.situation.phases import Phase
 from link.messages import Command
 from link.records import replace
-from tests.companion.world import CONFIG, GEAR_M, PAD, PAD_HEIGHT_M, START_NS, Flight, KnownVehicle
+from tests.companion.world import CONFIG, GEAR_M, PAD, PAD_HEIGHT_M, START_NS, Flight, KnownVehicle, own_state
 
 ROOF_M = CONFIG.takeoff.waiting_height_m  # as high as the drone hovers: no chase begins there
 
@@ -46,6 +46,22 @@ def test_roof_that_is_too_high_as_far_as_is_known_is_not_chased(roof_m: float, h
     outputs = flight.run(15.0)
     assert Phase.CHASE not in flight.history
     assert Reason.ROOF_TOO_HIGH.name in {one.status.reason_code for one in outputs}
+
+
+@pytest.mark.parametrize("roof_m", [PAD_HEIGHT_M, ROOF_M - 1.0])
+@pytest.mark.parametrize("height_m", [0.4, 2.2, ROOF_M + 0.1, ROOF_M + 0.7])
+def test_start_in_the_air_is_accepted_where_the_drone_will_wait_high_enough(height_m: float, roof_m: float) -> None:
+    flight = Flight(vehicle=KnownVehicle((-12.0, 0.7, roof_m), (0.0, 0.0, 0.0)), pad=replace(PAD, height_m=roof_m))
+    flight.own = own_state(START_NS, (0.0, 0.0, height_m + GEAR_M))
+    flight.view = replace(flight.view, armed=True, landed=False)
+    flight.run(CONFIG.chase.driving_hold_s + 0.1)
+    reply = flight.step(Command.START).reply
+    assert reply is not None
+    assert reply.accepted is (max(height_m, ROOF_M) - roof_m > chase_floor_m(CONFIG))
+    waits_enu_m = flight.memory.places.waiting_point_enu_m
+    if reply.accepted:
+        assert waits_enu_m is not None
+        assert waits_enu_m[2] - roof_m - GEAR_M > chase_floor_m(CONFIG)
 
 
 FAST = KnownVehicle((-60.0, 0.4, PAD_HEIGHT_M), (14.2, 0.0, 0.0))

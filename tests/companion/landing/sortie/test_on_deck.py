@@ -9,13 +9,14 @@ import pytest
 
 from companion.config.integrity import ReceiverFrames
 from companion.core.data import Array, Measurement, Quantity
+from companion.core.reasons import Cause, Reason, sentence
 from companion.landing.sortie.over_vehicle import is_deck_quiet, stands_on_deck
 from companion.situation.phases import Phase
 from companion.situation.situation import Situation
 from link.messages import Command, Vector3
 from link.records import replace
 from tests.companion.facts import TICK_NS, pad_at, situation
-from tests.companion.world import CONFIG, GEAR_M, Flight, KnownVehicle, on_deck
+from tests.companion.world import CONFIG, DISARM, GEAR_M, STEP_NS, Flight, KnownVehicle, on_deck
 
 NEAR_M, HEIGHT_M = 3.0, 0.5
 COARSE_M = 1.5
@@ -102,26 +103,54 @@ def test_drone_rises_where_it_stood_however_far_off_the_pad_was_taken_to_be() ->
     assert flight.own.position_enu_m[:2] == pytest.approx(flight.vehicle.at(flight.t_ns)[:2], abs=0.05)
 
 
+def wait(flight: Flight, time_s: float, tilt_rad: float = 0.0) -> None:
+    """Stand for a while on a deck that leans so."""
+    for _ in range(round(time_s * 1e9 / STEP_NS)):
+        rolled = (math.cos(0.5 * tilt_rad), math.sin(0.5 * tilt_rad), 0.0, 0.0)
+        flight.own = replace(flight.own, orientation_wxyz=rolled)
+        flight.step()
+
+
 def test_drone_that_was_disarmed_on_the_deck_starts_its_motors_by_a_new_order_only() -> None:
     flight = on_deck()
-
-    def wait(steps: int, tilt_rad: float) -> None:
-        for _ in range(steps):
-            assert flight.own is not None
-            rolled = (math.cos(0.5 * tilt_rad), math.sin(0.5 * tilt_rad), 0.0, 0.0)
-            flight.own = replace(flight.own, orientation_wxyz=rolled)
-            flight.step()
-
     flight.step(Command.LAUNCH)
     while not flight.view.armed:
         flight.step()
-    wait(20, tilt_rad=0.2)  # the deck is restless again
+    wait(flight, 0.4, tilt_rad=0.2)  # the deck is restless again
     assert flight.history[-1:] == [Phase.ON_DECK]
     flight.view = replace(flight.view, armed=False)  # a switch, a ground station, or the autopilot's own time-out
-    wait(20, tilt_rad=0.2)
-    wait(200, tilt_rad=0.0)
+    wait(flight, 0.4, tilt_rad=0.2)
+    wait(flight, 4.0)
     assert not flight.view.armed
     assert flight.history[-2:] == [Phase.ON_DECK, Phase.PILOT]
+
+
+LAUNCH = CONFIG.sortie.launch
+
+
+@pytest.mark.parametrize(("holds", "reason"), [(0.6, Reason.DECK_RESTLESS), (4.0, Reason.ARMING_REFUSED)])
+def test_autopilot_is_said_to_refuse_arming_only_where_it_was_ordered_to(holds: float, reason: Reason) -> None:
+    flight = on_deck()
+    flight.refuses = frozenset({DISARM})  # it is the command that arms
+    flight.step(Command.LAUNCH)
+    wait(flight, LAUNCH.time_limit_s - holds * LAUNCH.quiet_hold_s, tilt_rad=0.2)
+    wait(flight, 0.04)
+    flight.run_until(Phase.IDLE, Phase.TOUCHDOWN, limit_s=5.0)
+    assert flight.reason is reason
+    assert bool(flight.told(DISARM)) is (reason is Reason.ARMING_REFUSED)
+
+
+@pytest.mark.parametrize("reason", [Reason.OWN_POSITION_OLD, Reason.OWN_ATTITUDE_OLD])
+def test_launch_of_a_drone_whose_place_is_not_known_ends_at_once_and_says_so(reason: Reason) -> None:
+    flight = on_deck()
+    flight.refuses_plain_disarm = False
+    flight.step(Command.LAUNCH)
+    flight.own_is_silent = reason is Reason.OWN_POSITION_OLD
+    if reason is Reason.OWN_ATTITUDE_OLD:
+        flight.own = replace(flight.own, attitude_age_s=2.0)
+    said = [out.text for out in flight.run(CONFIG.abort.own_age_max_s + 0.2) if out.text]
+    assert said[0] == f"{Phase.TOUCHDOWN.value}: {sentence(Cause(reason))}"
+    assert not flight.view.armed
 
 
 @pytest.mark.parametrize(("grade", "is_quiet"), [(0.1, True), (0.0, False)])
