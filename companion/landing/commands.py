@@ -9,11 +9,12 @@ from companion.integrity.heights import VEHICLE_M
 from companion.landing.decisions.aborts import why_unplaced
 from companion.landing.decisions.conditions import is_fix_old
 from companion.landing.sortie.aims import rally_point_enu_m
-from companion.landing.sortie.events import has_not_left_deck, home_s
-from companion.landing.sortie.over_vehicle import ON_ROOF_M, SPEED_SHARE, keep_out_of, stands_on_deck
+from companion.landing.sortie.events import home_s
+from companion.landing.sortie.over_vehicle import SPEED_SHARE, keep_out_of, stands_on_deck
+from companion.landing.sortie.riding import has_not_left_deck, rides_along, tell_riding
 from companion.landing.steering.following_height import chase_floor_m
 from companion.situation.phases import Event, Phase, next_phase
-from companion.situation.situation import Situation, vehicle_stands
+from companion.situation.situation import Situation
 from companion.sortie.station import is_inside
 from link.messages import Command, CommandReply, Order, Station
 
@@ -133,7 +134,8 @@ def answer(
     if is_start or event is Event.LAUNCH:
         missing = _missing_for_start(situation)
     if is_start:
-        missing = missing or _rides_along(situation, config) or obstacle
+        riding = tell_riding(situation, config) if rides_along(situation, config) else None
+        missing = missing or riding or obstacle
     if event in (Event.FOLLOW, Event.RETURN) and not _flies(situation):
         missing = Cause(Reason.NOT_FLOWN, (order.command.value,))
     if event in SORTIE_EVENTS:
@@ -166,16 +168,6 @@ _ACCEPTED = CommandReply(accepted=True, reason="")
 
 def _refuse(why: Cause) -> CommandReply:
     return CommandReply(accepted=False, reason=sentence(why))
-
-
-def _rides_along(s: Situation, config: CompanionConfig) -> Cause | None:
-    """Return what is said of a drone that stands on a vehicle that drives: a take-off would begin at its speed."""
-    is_airborne = s.autopilot.armed and s.autopilot.landed is False
-    if s.approach is None or s.pad is None or is_airborne or vehicle_stands(s, config.chase):
-        return None
-    if not stands_on_deck(s, VEHICLE_M, ON_ROOF_M):
-        return None
-    return Cause(Reason.RIDES_ALONG, (s.pad.ground_speed_m_s,))
 
 
 def _missing_for_start(situation: Situation) -> Cause | None:

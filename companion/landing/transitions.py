@@ -10,6 +10,7 @@ from companion.landing.decisions.entries import update_held
 from companion.landing.decisions.events import decide
 from companion.landing.decisions.feasibility import OBSTACLES, obstacle
 from companion.landing.decisions.waiting import update_wait
+from companion.landing.flying import model_at
 from companion.landing.sortie.events import SORTIE_CONDITIONS, decide_sortie, stay_out, update_sortie
 from companion.landing.sortie.phases import begin_phase_of_sortie, clear_of_vehicle, take_order
 from companion.landing.state.memory import NOTHING_HELD, ControlMemory, ModelMemory, Progress, StepMemory
@@ -102,6 +103,8 @@ def _enter(memory: StepMemory, event: Event, cause: Cause, situation: Situation,
         return replace(memory, places=replace(places, waiting_point_enu_m=waiting_point))
     if phase in (Phase.TAKEOFF, Phase.ON_DECK):
         return _begin_flight(memory, situation, config)
+    if event is Event.CARRIED_OFF and situation.drone is not None:  # nothing pulls it back to where it began
+        return replace(memory, model=model_at(situation.drone, model, situation.monotonic_ns))
     if phase not in FLYING_PHASES:
         return replace(memory, model=replace(model, reference=None, tracking=Tracking()))
     if phase in (Phase.HOLD, Phase.ABORT) and model.reference is not None:

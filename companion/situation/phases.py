@@ -52,7 +52,10 @@ class Event(Enum):
     CLEAR = "clear"  # the abort climb is complete and a retry is left
     CLEAR_TO_HOLD = "clear to hold"  # the abort climb is complete, no retry is left or no vehicle is there
     REFUSED = "refused"  # the autopilot did not arm or give control in time
-    CALLED_OFF = "called off"  # an operator's hold or abort before the motors were armed
+    CALLED_OFF = (
+        "called off"  # by an operator, or as the vehicle drives off: before the motors were armed, or on its deck
+    )
+    CARRIED_OFF = "carried off"  # the vehicle drives off under a drone that has armed and stands on it
     TIME_LIMIT = "time limit"
     PILOT_TOOK_OVER = "pilot took over"
     DECK_QUIET = "deck quiet"  # with the motors armed
@@ -107,6 +110,7 @@ TRANSITIONS: dict[tuple[Phase, Event], Phase] = {
     (Phase.TAKEOFF, Event.TIME_LIMIT): Phase.HOLD,
     (Phase.TAKEOFF, Event.REFUSED): Phase.IDLE,
     (Phase.TAKEOFF, Event.CALLED_OFF): Phase.IDLE,
+    (Phase.TAKEOFF, Event.CARRIED_OFF): Phase.TOUCHDOWN,
     (Phase.WAITING, Event.VEHICLE_PASSES): Phase.CHASE,
     (Phase.CHASE, Event.OVER_PAD): Phase.ALIGN,
     (Phase.ALIGN, Event.ALIGNED): Phase.DESCEND,

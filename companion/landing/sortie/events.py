@@ -4,7 +4,6 @@ import math
 
 from companion.config.companion import CompanionConfig
 from companion.core.reasons import Cause, Reason
-from companion.integrity.heights import VEHICLE_M
 from companion.integrity.stamps import have_stamps_stepped, is_stamped_ahead
 from companion.integrity.vehicle_data import contradicts_itself
 from companion.landing.decisions.aborts import is_not_followed, is_token_lost, outruns
@@ -20,7 +19,8 @@ from companion.landing.decisions.conditions import (
 from companion.landing.decisions.entries import Decision
 from companion.landing.decisions.events import TOO_LONG
 from companion.landing.decisions.feasibility import EMPTY
-from companion.landing.sortie.over_vehicle import ON_ROOF_M, SPEED_SHARE, WAY_SHARE, is_deck_quiet, stands_on_deck
+from companion.landing.sortie.over_vehicle import SPEED_SHARE, WAY_SHARE, is_deck_quiet
+from companion.landing.sortie.riding import CARRIED_OFF, call_off, has_not_left_deck
 from companion.landing.state.memory import ControlMemory, Progress
 from companion.landing.steering.following_height import chase_floor_m
 from companion.situation.phases import OUT_PHASES, Event, Phase
@@ -70,7 +70,7 @@ NOT_FOLLOWED = Condition(
 MISPLACED = Condition(reason=Reason.STAMPS_STEPPED, phases=_TOGETHER, is_true=have_stamps_stepped)
 """The vehicle is metres from where it seems to be, and a station beside it may be in it: the drone climbs at once."""
 
-SORTIE_CONDITIONS = (*LOST, *OWN_LOST, NOT_FOLLOWED, MISPLACED)
+SORTIE_CONDITIONS = (*LOST, *OWN_LOST, NOT_FOLLOWED, MISPLACED, CARRIED_OFF)
 
 
 def update_sortie(sortie: SortieMemory, phase: Phase, s: Situation, config: CompanionConfig) -> SortieMemory:
@@ -129,10 +129,8 @@ def decide_sortie(
 ) -> Decision | None:
     """Return the event of this step in a phase of a sortie, None without one."""
     match progress.phase:
-        case Phase.ON_DECK:
-            return _leave_deck(sortie, progress, control, s, config)
-        case Phase.LIFT_OFF:
-            return _rise(progress, s, config)
+        case Phase.TAKEOFF | Phase.ON_DECK | Phase.LIFT_OFF:
+            return _take_off(sortie, progress, control, s, config)
         case Phase.FOLLOW | Phase.RETURN:
             return _stay_together(sortie, progress, s, config)
         case Phase.RALLY:
@@ -142,6 +140,18 @@ def decide_sortie(
             return _turn_home(sortie, s, config) or _go_on(sortie, progress, s, config)
         case _:
             return None
+
+
+def _take_off(
+    sortie: SortieMemory, progress: Progress, control: ControlMemory, s: Situation, config: CompanionConfig
+) -> Decision | None:
+    match progress.phase:
+        case Phase.TAKEOFF:
+            return call_off(progress.held, control, s, config)
+        case Phase.ON_DECK:
+            return _leave_deck(sortie, progress, control, s, config)
+        case _:
+            return _rise(progress, s, config)
 
 
 def stay_out(sortie: SortieMemory, progress: Progress, decision: Decision) -> Decision:
@@ -190,19 +200,6 @@ def _rise(progress: Progress, s: Situation, config: CompanionConfig) -> Decision
     if s.approach is not None and s.approach.height_m > _RISEN_SHARE * launch.clear_height_m:
         return Event.CLEAR_OF_DECK, Cause(Reason.CLEAR_OF_DECK, (s.approach.height_m,))
     return None
-
-
-def has_not_left_deck(s: Situation, config: CompanionConfig) -> bool:
-    """Return whether the drone stands on the deck still, by its autopilot's word and, where it is known, its place.
-
-    Of an autopilot that says nothing a range finder has to see the deck: else it may as well fly.
-    """
-    if s.approach is None:
-        return s.autopilot.landed is True
-    seen_m = s.below.range_height_m
-    touches = seen_m is not None and seen_m <= config.touchdown.range_finder.contact_height_max_m
-    stands = touches if s.autopilot.landed is None else s.autopilot.landed
-    return stands and stands_on_deck(s, VEHICLE_M, ON_ROOF_M)
 
 
 def _stay_together(sortie: SortieMemory, progress: Progress, s: Situation, config: CompanionConfig) -> Decision | None:
