@@ -9,9 +9,9 @@ from companion.integrity.heights import VEHICLE_M
 from companion.landing.decisions.aborts import why_unplaced
 from companion.landing.decisions.conditions import is_fix_old
 from companion.landing.sortie.aims import rally_point_enu_m
-from companion.landing.sortie.events import home_s
-from companion.landing.sortie.over_vehicle import SPEED_SHARE, keep_out_of, stands_on_deck
+from companion.landing.sortie.over_vehicle import keep_out_of, stands_on_deck
 from companion.landing.sortie.riding import has_not_left_deck, rides_along, tell_riding
+from companion.landing.sortie.way_home import out_of_reach
 from companion.landing.steering.following_height import chase_floor_m
 from companion.situation.phases import Event, Phase, next_phase
 from companion.situation.situation import Situation
@@ -42,9 +42,9 @@ def missing_for_sortie(
         case Event.LAUNCH:
             return _missing_for_launch(s) or _unless_ground_is_deck(obstacle) or _rally_out_of_range(s, config)
         case Event.FOLLOW if station is not None:
-            return why_no_station(station, s, config) or _out_of_reach(s, config) or _rally_out_of_range(s, config)
+            return why_no_station(station, s, config) or out_of_reach(s, config) or _rally_out_of_range(s, config)
         case _:
-            return _out_of_reach(s, config)
+            return out_of_reach(s, config)
 
 
 def is_above_vehicle(s: Situation, config: CompanionConfig) -> bool:
@@ -87,17 +87,6 @@ def _rally_out_of_range(s: Situation, config: CompanionConfig) -> Cause | None:
     distance_m = math.hypot(*(rally - s.drone.position_enu_m)[:2].tolist())
     most_m = config.limits.range_max_m
     return Cause(Reason.RALLY_TOO_FAR, (distance_m, most_m)) if distance_m > most_m else None
-
-
-def _out_of_reach(s: Situation, config: CompanionConfig) -> Cause | None:
-    if s.approach is None or s.pad is None or s.limits is None:
-        return Cause(Reason.NO_OWN_POSITION)
-    if s.approach.distance_m > config.limits.range_max_m:
-        return Cause(Reason.VEHICLE_OUT_OF_RANGE, (s.approach.distance_m, config.limits.range_max_m))
-    if math.isfinite(home_s(s, config)):
-        return None
-    speed_m_s = s.pad.ground_speed_m_s
-    return Cause(Reason.VEHICLE_DRIVES_OFF, (speed_m_s, SPEED_SHARE * s.limits.speed_max_m_s))
 
 
 _EVENTS = {

@@ -3,7 +3,7 @@
 import numpy as np
 
 from companion.config.companion import CompanionConfig
-from companion.core.reasons import Cause, Reason
+from companion.core.reasons import Cause, Reason, same_or_new
 from companion.landing.commands import answer
 from companion.landing.decisions.aborts import ABORTS
 from companion.landing.decisions.entries import update_held
@@ -59,7 +59,7 @@ def take_events(
             memory = replace(memory, progress=replace(memory.progress, may_retry=may_retry, cause=cause))
     progress = update_wait(memory, situation, config)
     held = update_held(progress.held, progress.phase, situation, config, others=_BESIDE_LANDINGS)
-    known = _same_or_new(progress.obstacle, obstacle(held, situation, config))
+    known = same_or_new(progress.obstacle, obstacle(held, situation, config))
     memory = replace(memory, progress=replace(progress, held=held, obstacle=known))
     memory = replace(memory, sortie=update_sortie(memory.sortie, progress.phase, situation, config))
     decision = decide(memory.progress, memory.control, situation, config)
@@ -80,11 +80,6 @@ def _update_control(memory: StepMemory, inputs: StepInputs) -> StepMemory:
     if (in_control, armed) == (control.was_in_control, control.was_armed):
         return memory
     return replace(memory, control=replace(control, was_in_control=in_control, was_armed=armed))
-
-
-def _same_or_new(told: Cause | None, now: Cause | None) -> Cause | None:
-    """Keep the numbers that were told as long as it is for the same reason: they change in every step."""
-    return told if told is not None and now is not None and told.reason is now.reason else now
 
 
 def _enter(memory: StepMemory, event: Event, cause: Cause, situation: Situation, config: CompanionConfig) -> StepMemory:

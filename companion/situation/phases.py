@@ -94,7 +94,7 @@ STATION_PHASES = frozenset({Phase.LIFT_OFF, Phase.FOLLOW, Phase.RETURN})
 FOLLOWING_PHASES = LANDING_PHASES | STATION_PHASES | {Phase.TOUCHDOWN, Phase.ABORT, Phase.ON_DECK}
 """Phases that plan by where the pad will be; all others need to know only where it is."""
 
-OUT_PHASES = frozenset({Phase.FOLLOW, Phase.HOLD, Phase.RALLY})
+OUT_PHASES = frozenset({Phase.WAITING, Phase.FOLLOW, Phase.HOLD, Phase.RALLY})
 """Phases of a sortie from which the way home may be long."""
 
 NEAR_PHASES = frozenset({Phase.ALIGN, Phase.DESCEND})
@@ -136,7 +136,7 @@ TRANSITIONS: dict[tuple[Phase, Event], Phase] = {
     (Phase.LIFT_OFF, Event.CLEAR_OF_DECK): Phase.FOLLOW,
     **{(phase, Event.FOLLOW): Phase.FOLLOW for phase in (Phase.WAITING, Phase.HOLD, Phase.RETURN, Phase.RALLY)},
     **{(phase, Event.RETURN): Phase.RETURN for phase in (Phase.WAITING, Phase.HOLD, Phase.FOLLOW, Phase.RALLY)},
-    **{(phase, Event.HOME_NOW): Phase.RETURN for phase in (Phase.HOLD, Phase.FOLLOW)},
+    **{(phase, Event.HOME_NOW): Phase.RETURN for phase in (Phase.WAITING, Phase.HOLD, Phase.FOLLOW)},
     (Phase.FOLLOW, Event.START): Phase.CHASE,
     (Phase.RETURN, Event.VEHICLE_NEAR): Phase.CHASE,
     (Phase.RALLY, Event.VEHICLE_FOUND): Phase.RETURN,
