@@ -101,7 +101,13 @@ _EVENTS = {
 
 
 def answer(
-    order: Order, phase: Phase, situation: Situation, config: CompanionConfig, obstacle: Cause | None = None
+    order: Order,
+    phase: Phase,
+    situation: Situation,
+    config: CompanionConfig,
+    obstacle: Cause | None = None,
+    *,
+    called_home: Cause | None = None,
 ) -> tuple[Event | None, CommandReply]:
     """Return the event that the order amounts to, None when it changes no phase, and the reply.
 
@@ -111,6 +117,7 @@ def answer(
         situation: now.
         config: all numbers.
         obstacle: why no landing can be done, None when one can.
+        called_home: that the battery lasts just for the way home, None while it lasts longer.
     """
     event = _event_of(order, phase, situation, config)
     is_start = order.command in (Command.START, Command.START_ANYWAY)
@@ -129,6 +136,7 @@ def answer(
         missing = Cause(Reason.NOT_FLOWN, (order.command.value,))
     if event in SORTIE_EVENTS:
         missing = missing or missing_for_sortie(event, order.station, situation, config, obstacle)
+        missing = missing or (called_home if event is Event.FOLLOW else None)
     return (None, _refuse(missing)) if missing is not None else (event, _ACCEPTED)
 
 

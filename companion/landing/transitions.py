@@ -13,6 +13,7 @@ from companion.landing.decisions.waiting import update_wait
 from companion.landing.flying import model_at
 from companion.landing.sortie.events import SORTIE_CONDITIONS, decide_sortie, stay_out, update_sortie
 from companion.landing.sortie.phases import begin_phase_of_sortie, clear_of_vehicle, take_order
+from companion.landing.sortie.way_home import way_home_due
 from companion.landing.state.memory import NOTHING_HELD, ControlMemory, ModelMemory, Progress, StepMemory
 from companion.landing.state.step_data import StepInputs
 from companion.landing.steering.targets import stopping_point
@@ -48,7 +49,8 @@ def take_events(
         progress = memory.progress
         known = obstacle(progress.held, situation, config)
         order = Order(command=inputs.command, station=inputs.station)
-        event, reply = answer(order, progress.phase, situation, config, known)
+        due = way_home_due(memory.sortie, situation, config)
+        event, reply = answer(order, progress.phase, situation, config, known, called_home=due)
         if event is not None:
             memory = _enter(memory, event, _COMMANDED[inputs.command], situation, config)
         if reply.accepted:

@@ -87,6 +87,18 @@ def test_drone_of_a_sortie_comes_home_from_where_an_operator_left_it(orders: tup
     assert Phase.RETURN in flight.history[flight.history.index(phase) :]
 
 
+def test_follow_is_refused_once_the_battery_calls_the_drone_home() -> None:
+    flight = reached(Phase.FOLLOW)
+    drain(flight)
+    flight.run_until(Phase.RETURN, Phase.CHASE)
+    flight.step(Command.HOLD)
+    flight.run_until(Phase.HOLD)
+    reply = flight.step(Command.FOLLOW).reply
+    assert reply is not None
+    assert reply.reason.startswith("comes home")
+    assert flight.phase is Phase.HOLD
+
+
 def test_return_is_not_advised_where_it_would_be_refused() -> None:
     flight = far_from_home(Command.RETURN, Command.HOLD)
     drain(flight)
