@@ -98,6 +98,12 @@ def arm(*, armed: bool, force: bool = False) -> AutopilotCommand:
     return AutopilotCommand(command=mavlink.MAV_CMD_COMPONENT_ARM_DISARM, parameters=parameters, retries=retries)
 
 
+def is_arming(memory: DriverMemory, monotonic_ns: int) -> bool:
+    """Return whether motors were asked for so lately that they may turn before anything has told so."""
+    asked_ns = (memory.asked_ns or {}).get(arm(armed=True))
+    return asked_ns is not None and (monotonic_ns - asked_ns) * 1e-9 < ASK_AGAIN_S
+
+
 def set_mode(main: int, sub: int = 0) -> AutopilotCommand:
     """Return the command that enters a mode, by the autopilot's own numbers."""
     parameters = (_CUSTOM_MODE_FLAG, float(main), float(sub), 0.0, 0.0, 0.0, 0.0)

@@ -181,3 +181,8 @@ class Cause(Struct, frozen=True):
 def sentence(cause: Cause) -> str:
     """Return what is told of a cause."""
     return cause.reason.value.format(*cause.values)
+
+
+def same_or_new(told: Cause | None, now: Cause | None) -> Cause | None:
+    """Keep the numbers that were told as long as it is for the same reason: they change in every step."""
+    return told if told is not None and now is not None and told.reason is now.reason else now

@@ -9,11 +9,12 @@ from companion.integrity.heights import VEHICLE_M
 from companion.landing.decisions.aborts import why_unplaced
 from companion.landing.decisions.conditions import is_fix_old
 from companion.landing.sortie.aims import rally_point_enu_m
-from companion.landing.sortie.events import has_not_left_deck, home_s
-from companion.landing.sortie.over_vehicle import ON_ROOF_M, SPEED_SHARE, keep_out_of, stands_on_deck
+from companion.landing.sortie.over_vehicle import keep_out_of, stands_on_deck
+from companion.landing.sortie.riding import has_not_left_deck, rides_along, tell_riding
+from companion.landing.sortie.way_home import out_of_reach
 from companion.landing.steering.following_height import chase_floor_m
 from companion.situation.phases import Event, Phase, next_phase
-from companion.situation.situation import Situation, vehicle_stands
+from companion.situation.situation import Situation
 from companion.sortie.station import is_inside
 from link.messages import Command, CommandReply, Order, Station
 
@@ -41,9 +42,9 @@ def missing_for_sortie(
         case Event.LAUNCH:
             return _missing_for_launch(s) or _unless_ground_is_deck(obstacle) or _rally_out_of_range(s, config)
         case Event.FOLLOW if station is not None:
-            return why_no_station(station, s, config) or _out_of_reach(s, config) or _rally_out_of_range(s, config)
+            return why_no_station(station, s, config) or out_of_reach(s, config) or _rally_out_of_range(s, config)
         case _:
-            return _out_of_reach(s, config)
+            return out_of_reach(s, config)
 
 
 def is_above_vehicle(s: Situation, config: CompanionConfig) -> bool:
@@ -88,17 +89,6 @@ def _rally_out_of_range(s: Situation, config: CompanionConfig) -> Cause | None:
     return Cause(Reason.RALLY_TOO_FAR, (distance_m, most_m)) if distance_m > most_m else None
 
 
-def _out_of_reach(s: Situation, config: CompanionConfig) -> Cause | None:
-    if s.approach is None or s.pad is None or s.limits is None:
-        return Cause(Reason.NO_OWN_POSITION)
-    if s.approach.distance_m > config.limits.range_max_m:
-        return Cause(Reason.VEHICLE_OUT_OF_RANGE, (s.approach.distance_m, config.limits.range_max_m))
-    if math.isfinite(home_s(s, config)):
-        return None
-    speed_m_s = s.pad.ground_speed_m_s
-    return Cause(Reason.VEHICLE_DRIVES_OFF, (speed_m_s, SPEED_SHARE * s.limits.speed_max_m_s))
-
-
 _EVENTS = {
     Command.START: Event.START,
     Command.START_ANYWAY: Event.START,  # the question that it skips is asked before the step
@@ -111,7 +101,13 @@ _EVENTS = {
 
 
 def answer(
-    order: Order, phase: Phase, situation: Situation, config: CompanionConfig, obstacle: Cause | None = None
+    order: Order,
+    phase: Phase,
+    situation: Situation,
+    config: CompanionConfig,
+    obstacle: Cause | None = None,
+    *,
+    called_home: Cause | None = None,
 ) -> tuple[Event | None, CommandReply]:
     """Return the event that the order amounts to, None when it changes no phase, and the reply.
 
@@ -121,6 +117,7 @@ def answer(
         situation: now.
         config: all numbers.
         obstacle: why no landing can be done, None when one can.
+        called_home: that the battery lasts just for the way home, None while it lasts longer.
     """
     event = _event_of(order, phase, situation, config)
     is_start = order.command in (Command.START, Command.START_ANYWAY)
@@ -133,11 +130,13 @@ def answer(
     if is_start or event is Event.LAUNCH:
         missing = _missing_for_start(situation)
     if is_start:
-        missing = missing or _rides_along(situation, config) or obstacle
+        riding = tell_riding(situation, config) if rides_along(situation, config) else None
+        missing = missing or riding or obstacle
     if event in (Event.FOLLOW, Event.RETURN) and not _flies(situation):
         missing = Cause(Reason.NOT_FLOWN, (order.command.value,))
     if event in SORTIE_EVENTS:
         missing = missing or missing_for_sortie(event, order.station, situation, config, obstacle)
+        missing = missing or (called_home if event is Event.FOLLOW else None)
     return (None, _refuse(missing)) if missing is not None else (event, _ACCEPTED)
 
 
@@ -166,16 +165,6 @@ _ACCEPTED = CommandReply(accepted=True, reason="")
 
 def _refuse(why: Cause) -> CommandReply:
     return CommandReply(accepted=False, reason=sentence(why))
-
-
-def _rides_along(s: Situation, config: CompanionConfig) -> Cause | None:
-    """Return what is said of a drone that stands on a vehicle that drives: a take-off would begin at its speed."""
-    is_airborne = s.autopilot.armed and s.autopilot.landed is False
-    if s.approach is None or s.pad is None or is_airborne or vehicle_stands(s, config.chase):
-        return None
-    if not stands_on_deck(s, VEHICLE_M, ON_ROOF_M):
-        return None
-    return Cause(Reason.RIDES_ALONG, (s.pad.ground_speed_m_s,))
 
 
 def _missing_for_start(situation: Situation) -> Cause | None:

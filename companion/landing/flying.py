@@ -5,9 +5,10 @@ import numpy as np
 from companion.config.companion import CompanionConfig
 from companion.core.data import STEP_MAX_S, FlightLimits
 from companion.landing.carried_on import limit_rates
+from companion.landing.decisions.conditions import is_fix_old
 from companion.landing.decisions.waiting import waits_at_m
 from companion.landing.sortie.aims import advance_way, sortie_aim
-from companion.landing.sortie.events import has_not_left_deck
+from companion.landing.sortie.riding import has_not_left_deck
 from companion.landing.state.memory import ModelMemory, StepMemory
 from companion.landing.state.step_data import StepInputs, System
 from companion.landing.steering.flown_plan import extrapolate, flown_plan, state_at
@@ -40,7 +41,7 @@ def _aim(
         return aim
     match phase:
         case Phase.CHASE | Phase.ALIGN | Phase.DESCEND | Phase.TOUCHDOWN | Phase.ABORT if pad is not None and (
-            phase is not Phase.ABORT or _is_fresh(situation, config)
+            phase is not Phase.ABORT or not is_fix_old(situation, config)
         ):
             lowest_m = waits_at_m(memory, situation, config)
             return pad_aim(phase, pad, reference, situation.feet_offset_m, config, limits=limits, lowest_m=lowest_m)
@@ -57,15 +58,10 @@ def _aim(
 
 def _waiting_rise_m(phase: Phase, waiting_enu_m: float, situation: Situation, config: CompanionConfig) -> float:
     pad = situation.pad
-    if phase is not Phase.WAITING or pad is None or not _is_fresh(situation, config):
+    if phase is not Phase.WAITING or pad is None or is_fix_old(situation, config):
         return 0.0
     height_m = waiting_enu_m - situation.feet_offset_m - float(pad.position_enu_m[0, 2])
     return waiting_rise_m(height_m, pad, config)
-
-
-def _is_fresh(situation: Situation, config: CompanionConfig) -> bool:
-    age_s = situation.vehicle.fix_age_s
-    return age_s is not None and age_s <= config.abort.fix_age_max_s
 
 
 def fly(
@@ -209,27 +205,32 @@ def _to_lost_drone(memory: StepMemory, situation: Situation) -> StepMemory:
     is_watched = phase in LANDING_PHASES or phase in (Phase.TOUCHDOWN, Phase.FOLLOW)
     if is_watched or drone is None or tracking.error_m < situation.following.error_max_m:
         return memory
-    reference = ReferenceState(
-        position_enu_m=drone.position_enu_m, velocity_enu_m_s=drone.velocity_enu_m_s, acceleration_enu_m_s2=np.zeros(3)
-    )
-    model = replace(
-        memory.model,
-        reference=reference,
-        reference_ns=situation.monotonic_ns,
+    model, places = model_at(drone, memory.model, situation.monotonic_ns), memory.places
+    if phase in (Phase.ABORT, Phase.HOLD) and model.reference is not None:
+        places = replace(places, anchor_enu_m=stopping_point(model.reference))
+    return replace(memory, model=model, places=places)
+
+
+def model_at(drone: Drone, model: ModelMemory, monotonic_ns: int) -> ModelMemory:
+    """Return the virtual model where the drone is, moving as it does."""
+    return replace(
+        model,
+        reference=ReferenceState(
+            position_enu_m=drone.position_enu_m,
+            velocity_enu_m_s=drone.velocity_enu_m_s,
+            acceleration_enu_m_s2=np.zeros(3),
+        ),
+        reference_ns=monotonic_ns,
         plan=None,
         guidance=None,
-        tracking=Tracking(compared_ns=tracking.compared_ns),
+        tracking=Tracking(compared_ns=model.tracking.compared_ns),
     )
-    places = memory.places
-    if phase in (Phase.ABORT, Phase.HOLD):
-        places = replace(places, anchor_enu_m=stopping_point(reference))
-    return replace(memory, model=model, places=places)
 
 
 def _update_anchor(memory: StepMemory, situation: Situation, config: CompanionConfig) -> StepMemory:
     """Take the place to stop along while an abort follows the vehicle, for when the vehicle falls silent."""
     reference, anchor = memory.model.reference, memory.places.anchor_enu_m
-    is_beside = situation.pad is not None and _is_fresh(situation, config)
+    is_beside = situation.pad is not None and not is_fix_old(situation, config)
     if memory.progress.phase is not Phase.ABORT or reference is None or anchor is None or not is_beside:
         return memory
     x, y, _ = stopping_point(reference)

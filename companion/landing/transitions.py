@@ -3,15 +3,17 @@
 import numpy as np
 
 from companion.config.companion import CompanionConfig
-from companion.core.reasons import Cause, Reason
+from companion.core.reasons import Cause, Reason, same_or_new
 from companion.landing.commands import answer
 from companion.landing.decisions.aborts import ABORTS
 from companion.landing.decisions.entries import update_held
 from companion.landing.decisions.events import decide
 from companion.landing.decisions.feasibility import OBSTACLES, obstacle
 from companion.landing.decisions.waiting import update_wait
+from companion.landing.flying import model_at
 from companion.landing.sortie.events import SORTIE_CONDITIONS, decide_sortie, stay_out, update_sortie
 from companion.landing.sortie.phases import begin_phase_of_sortie, clear_of_vehicle, take_order
+from companion.landing.sortie.way_home import way_home_due
 from companion.landing.state.memory import NOTHING_HELD, ControlMemory, ModelMemory, Progress, StepMemory
 from companion.landing.state.step_data import StepInputs
 from companion.landing.steering.following_height import climb_m, too_low_m
@@ -48,7 +50,8 @@ def take_events(
         progress = memory.progress
         known = obstacle(progress.held, situation, config)
         order = Order(command=inputs.command, station=inputs.station)
-        event, reply = answer(order, progress.phase, situation, config, known)
+        due = way_home_due(memory.sortie, situation, config)
+        event, reply = answer(order, progress.phase, situation, config, known, called_home=due)
         if event is not None:
             memory = _enter(memory, event, _COMMANDED[inputs.command], situation, config)
         if reply.accepted:
@@ -59,7 +62,7 @@ def take_events(
             memory = replace(memory, progress=replace(memory.progress, may_retry=may_retry, cause=cause))
     progress = update_wait(memory, situation, config)
     held = update_held(progress.held, progress.phase, situation, config, others=_BESIDE_LANDINGS)
-    known = _same_or_new(progress.obstacle, obstacle(held, situation, config))
+    known = same_or_new(progress.obstacle, obstacle(held, situation, config))
     memory = replace(memory, progress=replace(progress, held=held, obstacle=known))
     memory = replace(memory, sortie=update_sortie(memory.sortie, progress.phase, situation, config))
     decision = decide(memory.progress, memory.control, situation, config)
@@ -82,11 +85,6 @@ def _update_control(memory: StepMemory, inputs: StepInputs) -> StepMemory:
     return replace(memory, control=replace(control, was_in_control=in_control, was_armed=armed))
 
 
-def _same_or_new(told: Cause | None, now: Cause | None) -> Cause | None:
-    """Keep the numbers that were told as long as it is for the same reason: they change in every step."""
-    return told if told is not None and now is not None and told.reason is now.reason else now
-
-
 def _enter(memory: StepMemory, event: Event, cause: Cause, situation: Situation, config: CompanionConfig) -> StepMemory:
     """Return the memory in the phase that `event` leads to, with what that phase needs at its beginning."""
     phase = next_phase(memory.progress.phase, event)
@@ -103,6 +101,8 @@ def _enter(memory: StepMemory, event: Event, cause: Cause, situation: Situation,
         return replace(memory, places=replace(places, waiting_point_enu_m=waiting_point))
     if phase in (Phase.TAKEOFF, Phase.ON_DECK):
         return _begin_flight(memory, situation, config)
+    if event is Event.CARRIED_OFF and situation.drone is not None:  # nothing pulls it back to where it began
+        return replace(memory, model=model_at(situation.drone, model, situation.monotonic_ns))
     if phase not in FLYING_PHASES:
         return replace(memory, model=replace(model, reference=None, tracking=Tracking()))
     if phase in (Phase.HOLD, Phase.ABORT) and model.reference is not None:

@@ -52,7 +52,10 @@ class Event(Enum):
     CLEAR = "clear"  # the abort climb is complete and a retry is left
     CLEAR_TO_HOLD = "clear to hold"  # the abort climb is complete, no retry is left or no vehicle is there
     REFUSED = "refused"  # the autopilot did not arm or give control in time
-    CALLED_OFF = "called off"  # an operator's hold or abort before the motors were armed
+    CALLED_OFF = (
+        "called off"  # by an operator, or as the vehicle drives off: before the motors were armed, or on its deck
+    )
+    CARRIED_OFF = "carried off"  # the vehicle drives off under a drone that has armed and stands on it
     TIME_LIMIT = "time limit"
     PILOT_TOOK_OVER = "pilot took over"
     DECK_QUIET = "deck quiet"  # with the motors armed
@@ -91,7 +94,7 @@ STATION_PHASES = frozenset({Phase.LIFT_OFF, Phase.FOLLOW, Phase.RETURN})
 FOLLOWING_PHASES = LANDING_PHASES | STATION_PHASES | {Phase.TOUCHDOWN, Phase.ABORT, Phase.ON_DECK}
 """Phases that plan by where the pad will be; all others need to know only where it is."""
 
-OUT_PHASES = frozenset({Phase.FOLLOW, Phase.HOLD, Phase.RALLY})
+OUT_PHASES = frozenset({Phase.WAITING, Phase.FOLLOW, Phase.HOLD, Phase.RALLY})
 """Phases of a sortie from which the way home may be long."""
 
 NEAR_PHASES = frozenset({Phase.ALIGN, Phase.DESCEND})
@@ -107,6 +110,7 @@ TRANSITIONS: dict[tuple[Phase, Event], Phase] = {
     (Phase.TAKEOFF, Event.TIME_LIMIT): Phase.HOLD,
     (Phase.TAKEOFF, Event.REFUSED): Phase.IDLE,
     (Phase.TAKEOFF, Event.CALLED_OFF): Phase.IDLE,
+    (Phase.TAKEOFF, Event.CARRIED_OFF): Phase.TOUCHDOWN,
     (Phase.WAITING, Event.VEHICLE_PASSES): Phase.CHASE,
     (Phase.CHASE, Event.OVER_PAD): Phase.ALIGN,
     (Phase.ALIGN, Event.ALIGNED): Phase.DESCEND,
@@ -132,7 +136,7 @@ TRANSITIONS: dict[tuple[Phase, Event], Phase] = {
     (Phase.LIFT_OFF, Event.CLEAR_OF_DECK): Phase.FOLLOW,
     **{(phase, Event.FOLLOW): Phase.FOLLOW for phase in (Phase.WAITING, Phase.HOLD, Phase.RETURN, Phase.RALLY)},
     **{(phase, Event.RETURN): Phase.RETURN for phase in (Phase.WAITING, Phase.HOLD, Phase.FOLLOW, Phase.RALLY)},
-    **{(phase, Event.HOME_NOW): Phase.RETURN for phase in (Phase.HOLD, Phase.FOLLOW)},
+    **{(phase, Event.HOME_NOW): Phase.RETURN for phase in (Phase.WAITING, Phase.HOLD, Phase.FOLLOW)},
     (Phase.FOLLOW, Event.START): Phase.CHASE,
     (Phase.RETURN, Event.VEHICLE_NEAR): Phase.CHASE,
     (Phase.RALLY, Event.VEHICLE_FOUND): Phase.RETURN,

@@ -103,6 +103,8 @@ class SortieMemory(Struct, frozen=True, kw_only=True, eq=False):
         station: that is kept, or was last.
         way: to the station; None while none is kept.
         ahead_rad: where ahead was when it could be told, from East counter-clockwise.
+        was_due: the battery has called the drone home since an operator sent it out.
+        stays_out: an operator has stopped it after that, so that it does not set out by itself.
         follows: the drone is to stay out beside the vehicle; otherwise it is on its way home, or lands.
         place_enu_m: (3,) where a silent vehicle is looked for; None while it is heard.
         found_since_ns: since when a vehicle that was silent is heard again, monotonic; None while it is not.
@@ -115,6 +117,8 @@ class SortieMemory(Struct, frozen=True, kw_only=True, eq=False):
     station: Station | None = None
     way: Way | None = None
     ahead_rad: float = 0.0
+    was_due: bool = False
+    stays_out: bool = False
     follows: bool = False
     place_enu_m: Array | None = None
     found_since_ns: int | None = None

@@ -1,8 +1,9 @@
 """Where the phases of a sortie want the drone over the horizon: lift-off, station, way home, rally; pure.
 
-A new station is reached on a way that is laid from where the drone was when it was told to go. A place moves along the
-way, and the drone is led to this place with all that it can. The place does not wait for a drone that falls behind in
-a brake or a bend: a way that restarted wherever the drone is would lead it back with `WAY_SHARE` of that.
+The first station is reached on a way that is laid from where the drone was when it was told to go, each other one from
+the place on the way before. A place moves along the way, and the drone is led to this place with all that it can. The
+place does not wait for a drone that falls behind in a brake or a bend: a way that restarted wherever the drone is would
+lead it back with `WAY_SHARE` of that.
 """
 
 import math
@@ -42,8 +43,8 @@ from link.records import replace
 def advance_way(memory: StepMemory, s: Situation, limits: FlightLimits, config: CompanionConfig) -> StepMemory:
     """Return the memory with the place on the way to the station moved on to this step.
 
-    It begins where the drone is: for a new station, and when the drone has been pushed to where the vehicle is between
-    it and its place.
+    It begins where the drone is: for the first station, for one in another frame, and when the drone has been pushed to
+    where the vehicle is between it and its place.
     """
     sortie, reference, pad = memory.sortie, memory.model.reference, s.pad
     if memory.progress.phase is not Phase.FOLLOW or sortie.station is None or reference is None or pad is None:
@@ -76,13 +77,12 @@ def _way_now(
     end_m = kept_station_m(station, sortie.ahead_rad, pad, limits, config)
     ahead = ahead_rad(station.frame, pad, sortie.ahead_rad)
     here_m = turned(here_enu_m, -ahead)
-    place_m = way.place_m if way is not None and way.frame is station.frame and way.station == station else here_m
+    place_m = way.place_m if way is not None and way.frame is station.frame else here_m
     is_outrun = any(turns_too_fast(one, station.frame, ahead, pad, limits) for one in (place_m, end_m))
     frame = StationFrame.NORTH if is_outrun else station.frame
     begins_m = turned(here_enu_m, -ahead_rad(frame, pad, sortie.ahead_rad))
-    goes_on = way is not None and way.station == station and way.frame is frame
-    if way is not None and goes_on and is_clear(begins_m, way.place_m, keep_out):
-        return replace(way, end_m=end_m)
+    if way is not None and way.frame is frame and is_clear(begins_m, way.place_m, keep_out):
+        return replace(way, station=station, end_m=end_m)
     return Way(station=station, frame=frame, end_m=end_m, place_m=begins_m, at_ns=now_ns)
 
 

@@ -1,10 +1,7 @@
 """Decides the event of a step in a sortie, and updates the sortie's memory; pure."""
 
-import math
-
 from companion.config.companion import CompanionConfig
 from companion.core.reasons import Cause, Reason
-from companion.integrity.heights import VEHICLE_M
 from companion.integrity.stamps import have_stamps_stepped, is_stamped_ahead
 from companion.integrity.vehicle_data import contradicts_itself
 from companion.landing.decisions.aborts import is_not_followed, is_token_lost, outruns
@@ -20,17 +17,20 @@ from companion.landing.decisions.conditions import (
 from companion.landing.decisions.entries import Decision
 from companion.landing.decisions.events import TOO_LONG, arming_refused
 from companion.landing.decisions.feasibility import EMPTY
-from companion.landing.sortie.over_vehicle import ON_ROOF_M, SPEED_SHARE, WAY_SHARE, is_deck_quiet, stands_on_deck
+from companion.landing.sortie.over_vehicle import is_deck_quiet
+from companion.landing.sortie.riding import CARRIED_OFF, call_off, has_not_left_deck
+from companion.landing.sortie.way_home import warn_of_way_home, way_home_due
 from companion.landing.state.memory import ControlMemory, Progress
 from companion.landing.steering.following_height import chase_floor_m
-from companion.situation.phases import OUT_PHASES, Event, Phase
+from companion.situation.phases import Event, Phase
 from companion.situation.situation import Situation
-from companion.sortie.memory import UNTOLD, SortieMemory, left_s, update_battery
-from companion.sortie.station import ahead_rad, intercept_s
+from companion.sortie.memory import UNTOLD, SortieMemory, update_battery
+from companion.sortie.station import ahead_rad
 from link.messages import StationFrame
 from link.records import replace
 
 _RISEN_SHARE = 0.8  # of the height that is clear of the deck
+_ORDERED = frozenset({Reason.OPERATOR_HOLDS, Reason.OPERATOR_ABORTS, Reason.BROKEN_OFF})
 _TOGETHER = frozenset({Phase.LIFT_OFF, Phase.FOLLOW, Phase.RETURN})
 
 LOST = (
@@ -70,7 +70,7 @@ NOT_FOLLOWED = Condition(
 MISPLACED = Condition(reason=Reason.STAMPS_STEPPED, phases=_TOGETHER, is_true=have_stamps_stepped)
 """The vehicle is metres from where it seems to be, and a station beside it may be in it: the drone climbs at once."""
 
-SORTIE_CONDITIONS = (*LOST, *OWN_LOST, NOT_FOLLOWED, MISPLACED)
+SORTIE_CONDITIONS = (*LOST, *OWN_LOST, NOT_FOLLOWED, MISPLACED, CARRIED_OFF)
 
 
 def update_sortie(sortie: SortieMemory, phase: Phase, s: Situation, config: CompanionConfig) -> SortieMemory:
@@ -88,10 +88,11 @@ def update_sortie(sortie: SortieMemory, phase: Phase, s: Situation, config: Comp
         sortie,
         ahead_rad=ahead,
         battery=battery,
+        was_due=sortie.was_due or way_home_due(sortie, s, config) is not None,
         quiet_since_ns=_since(sortie.quiet_since_ns, s.monotonic_ns, holds_now=is_quiet),
         found_since_ns=_since(sortie.found_since_ns, s.monotonic_ns, holds_now=is_found),
     )
-    return replace(sortie, warning=_warning(sortie, phase, s, config))
+    return replace(sortie, warning=warn_of_way_home(sortie, phase, s, config))
 
 
 def _since(since_ns: int | None, now_ns: int, *, holds_now: bool) -> int | None:
@@ -100,48 +101,33 @@ def _since(since_ns: int | None, now_ns: int, *, holds_now: bool) -> int | None:
     return now_ns if since_ns is None else since_ns
 
 
-def _warning(sortie: SortieMemory, phase: Phase, s: Situation, config: CompanionConfig) -> Cause | None:
-    """Return what the pilot is told of the way home, with the numbers that it was first told with."""
-    if phase not in OUT_PHASES:
-        return None
-    lasts_s = left_s(sortie.battery, config.limits.battery_min_share, s.monotonic_ns)
-    needed_s = home_s(s, config)
-    spare_s = lasts_s - needed_s if math.isfinite(lasts_s) else math.inf
-    if spare_s > config.sortie.warn_before_s or not math.isfinite(needed_s):  # no way home leads to who is faster
-        return None
-    return sortie.warning or Cause(Reason.HOME_SOON, (max(spare_s, 0.0),))
-
-
-def home_s(s: Situation, config: CompanionConfig) -> float:
-    """Return how long the way home and the landing take; infinite for a vehicle that outruns the drone."""
-    if s.approach is None or s.pad is None or s.limits is None:
-        return config.limits.landing_time_s
-    way = s.pad.position_enu_m[0, :2] - s.drone.position_enu_m[:2] if s.drone is not None else None
-    if way is None or s.approach.distance_m < config.chase.passing_distance_m:
-        return config.limits.landing_time_s
-    limits, velocity = s.limits, s.pad.velocity_enu_m_s[0, :2]
-    flight_s = intercept_s(way, velocity, SPEED_SHARE * limits.speed_max_m_s, WAY_SHARE * limits.acceleration_max_m_s2)
-    return math.inf if flight_s is None else flight_s + config.limits.landing_time_s
-
-
 def decide_sortie(
     sortie: SortieMemory, progress: Progress, control: ControlMemory, s: Situation, config: CompanionConfig
 ) -> Decision | None:
     """Return the event of this step in a phase of a sortie, None without one."""
     match progress.phase:
-        case Phase.ON_DECK:
-            return _leave_deck(sortie, progress, control, s, config)
-        case Phase.LIFT_OFF:
-            return _rise(progress, s, config)
+        case Phase.TAKEOFF | Phase.ON_DECK | Phase.LIFT_OFF:
+            return _take_off(sortie, progress, control, s, config)
         case Phase.FOLLOW | Phase.RETURN:
             return _stay_together(sortie, progress, s, config)
         case Phase.RALLY:
             return _find(sortie, s, config)
-        case Phase.HOLD if sortie.is_out and (sortie.follows or progress.may_retry):
-            # but not where an operator has broken the way home off
-            return _turn_home(sortie, s, config) or _go_on(sortie, progress, s, config)
+        case Phase.WAITING | Phase.HOLD if sortie.is_out:
+            return _turn_home(sortie, progress, s, config) or _go_on(sortie, progress, s, config)
         case _:
             return None
+
+
+def _take_off(
+    sortie: SortieMemory, progress: Progress, control: ControlMemory, s: Situation, config: CompanionConfig
+) -> Decision | None:
+    match progress.phase:
+        case Phase.TAKEOFF:
+            return call_off(progress.held, control, s, config)
+        case Phase.ON_DECK:
+            return _leave_deck(sortie, progress, control, s, config)
+        case _:
+            return _rise(progress, s, config)
 
 
 def stay_out(sortie: SortieMemory, progress: Progress, decision: Decision) -> Decision:
@@ -191,19 +177,6 @@ def _rise(progress: Progress, s: Situation, config: CompanionConfig) -> Decision
     return None
 
 
-def has_not_left_deck(s: Situation, config: CompanionConfig) -> bool:
-    """Return whether the drone stands on the deck still, by its autopilot's word and, where it is known, its place.
-
-    Of an autopilot that says nothing a range finder has to see the deck: else it may as well fly.
-    """
-    if s.approach is None:
-        return s.autopilot.landed is True
-    seen_m = s.below.range_height_m
-    touches = seen_m is not None and seen_m <= config.touchdown.range_finder.contact_height_max_m
-    stands = touches if s.autopilot.landed is None else s.autopilot.landed
-    return stands and stands_on_deck(s, VEHICLE_M, ON_ROOF_M)
-
-
 def _stay_together(sortie: SortieMemory, progress: Progress, s: Situation, config: CompanionConfig) -> Decision | None:
     unsafe = first_cause((*OWN_LOST, NOT_FOLLOWED, MISPLACED), progress.held, s, config)
     if unsafe is not None:
@@ -212,7 +185,7 @@ def _stay_together(sortie: SortieMemory, progress: Progress, s: Situation, confi
     if lost is not None:
         return Event.VEHICLE_LOST, lost
     if progress.phase is Phase.FOLLOW:
-        return _turn_home(sortie, s, config)
+        return _turn_home(sortie, progress, s, config)
     limit_s = config.sortie.return_time_limit_s
     if (s.monotonic_ns - progress.since_ns) * 1e-9 > limit_s:
         return Event.TIME_LIMIT, progress.obstacle or Cause(TOO_LONG[Phase.RETURN], (limit_s,))
@@ -222,13 +195,14 @@ def _stay_together(sortie: SortieMemory, progress: Progress, s: Situation, confi
     return Event.VEHICLE_NEAR, Cause(Reason.VEHICLE_NEAR, (a.distance_m,))
 
 
-def _turn_home(sortie: SortieMemory, s: Situation, config: CompanionConfig) -> Decision | None:
-    """Return the way home before the point of no return is passed."""
-    if is_fix_old(s, config):
-        return None
-    lasts_s = left_s(sortie.battery, config.limits.battery_min_share, s.monotonic_ns)
-    needed_s = home_s(s, config)
-    return (Event.HOME_NOW, Cause(Reason.HOME_NOW, (lasts_s, needed_s))) if lasts_s <= needed_s < math.inf else None
+def _turn_home(sortie: SortieMemory, progress: Progress, s: Situation, config: CompanionConfig) -> Decision | None:
+    """Return the way home before the point of no return is passed; a way that took too long is not begun again.
+
+    Nor one that an operator has broken off after its time had come; one who ordered a hold before may not know of it.
+    """
+    goes = sortie.follows or progress.may_retry or progress.cause.reason in _ORDERED
+    due = way_home_due(sortie, s, config) if goes and not sortie.stays_out else None
+    return None if due is None else (Event.HOME_NOW, due)
 
 
 def _go_on(sortie: SortieMemory, progress: Progress, s: Situation, config: CompanionConfig) -> Decision | None:

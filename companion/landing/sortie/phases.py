@@ -6,7 +6,7 @@ import numpy as np
 
 from companion.config.companion import CompanionConfig
 from companion.core.data import Array
-from companion.landing.sortie.events import home_s
+from companion.landing.sortie.way_home import home_s
 from companion.landing.state.memory import StepMemory
 from companion.landing.steering.targets import HORIZON_OFFSETS_S, stopping_point
 from companion.situation.phases import FLYING_PHASES, STATION_PHASES, Phase
@@ -26,11 +26,13 @@ def take_order(sortie: SortieMemory, order: Order) -> SortieMemory:
     """Return the sortie after an accepted order."""
     match order.command:
         case Command.FOLLOW:
-            return replace(sortie, is_out=True, station=order.station)
+            return replace(sortie, is_out=True, station=order.station, was_due=False, stays_out=False)
         case Command.LAUNCH | Command.RETURN:
-            return replace(sortie, is_out=True)
-        case _:
-            return sortie
+            return replace(sortie, is_out=True, was_due=False, stays_out=False)
+        case Command.HOLD | Command.ABORT:
+            return replace(sortie, stays_out=sortie.was_due)
+        case Command.START | Command.START_ANYWAY:
+            return replace(sortie, was_due=False, stays_out=False)
 
 
 def begin_phase_of_sortie(

@@ -55,6 +55,24 @@ def replace_velocity(flight: Flight, velocity_enu_m_s: tuple[float, float, float
     return KnownVehicle(flight.vehicle.start_enu_m, velocity_enu_m_s)
 
 
+def test_another_station_is_flown_to_from_the_place_on_the_way_and_not_from_where_the_drone_lags() -> None:
+    flight = reached(Phase.FOLLOW)
+    flight.run(10.0)
+    memory = flight.memory
+    assert memory.sortie.way is not None
+    assert memory.model.reference is not None
+    lagging_m = memory.model.reference.position_enu_m - np.array([0.5, 0.2, 0.0])
+    lagging = replace(memory.model.reference, position_enu_m=lagging_m)
+    flight.memory = replace(memory, model=replace(memory.model, reference=lagging, plan=None))
+    ahead_m, left_m, up_m = flight.station.offset_m
+    flight.station = Station(offset_m=(ahead_m + 0.01, left_m, up_m))
+    flight.step(Command.FOLLOW)
+    way = flight.memory.sortie.way
+    assert way is not None
+    assert way.station == flight.station
+    assert way.place_m == pytest.approx(memory.sortie.way.place_m, abs=0.05)
+
+
 def test_launch_beside_the_vehicle_is_refused() -> None:
     flight = Flight()
     flight.run(0.1)

@@ -63,6 +63,56 @@ def test_operator_stops_a_drone_that_comes_home_by_itself(command: Command) -> N
     assert flight.phase is Phase.HOLD
 
 
+def far_from_home(*orders: Command) -> Flight:
+    """A drone of a sortie with these orders, after a hold that the vehicle drives away from."""
+    flight = reached(Phase.FOLLOW)
+    for order in orders:
+        flight.step(order)
+        if order is Command.HOLD:
+            flight.run_until(Phase.HOLD)
+            flight.run(15.0)
+    return flight
+
+
+@pytest.mark.parametrize(
+    ("orders", "phase"),
+    [((Command.HOLD, Command.START), Phase.WAITING), ((Command.RETURN, Command.HOLD), Phase.HOLD)],
+    ids=["waiting", "way home broken off"],
+)
+def test_drone_of_a_sortie_comes_home_from_where_an_operator_left_it(orders: tuple[Command], phase: Phase) -> None:
+    flight = far_from_home(*orders)
+    assert flight.phase is phase
+    drain(flight)
+    assert flight.history[-1] in {Phase.RETURN, Phase.CHASE}
+    assert Phase.RETURN in flight.history[flight.history.index(phase) :]
+
+
+def test_follow_is_refused_once_the_battery_calls_the_drone_home() -> None:
+    flight = reached(Phase.FOLLOW)
+    drain(flight)
+    flight.run_until(Phase.RETURN, Phase.CHASE)
+    flight.step(Command.HOLD)
+    flight.run_until(Phase.HOLD)
+    reply = flight.step(Command.FOLLOW).reply
+    assert reply is not None
+    assert reply.reason.startswith("comes home")
+    assert flight.phase is Phase.HOLD
+
+
+def test_return_is_not_advised_where_it_would_be_refused() -> None:
+    flight = far_from_home(Command.RETURN, Command.HOLD)
+    drain(flight)
+    flight.step(Command.HOLD)
+    flight.vehicle = KnownVehicle((2.0 * CONFIG.limits.range_max_m, 0.0, PAD_HEIGHT_M), (0.0, 0.0, 0.0))
+    flight.run(3.0)
+    assert flight.phase is Phase.HOLD
+    assert flight.outputs is not None
+    assert flight.outputs.status.reason_code == Reason.VEHICLE_OUT_OF_RANGE.name
+    reply = flight.step(Command.RETURN).reply
+    assert reply is not None
+    assert not reply.accepted
+
+
 def test_landing_of_a_drone_that_held_before_may_be_retried() -> None:
     flight = reached(Phase.FOLLOW)
     flight.step(Command.HOLD)

@@ -3,7 +3,7 @@
 import pytest
 
 from companion.core.reasons import Reason
-from companion.landing.sortie.events import has_not_left_deck
+from companion.landing.sortie.riding import has_not_left_deck
 from companion.situation.phases import Phase
 from link.messages import Command
 from link.records import replace
