@@ -11,6 +11,7 @@ from companion.check.rules import judge
 from companion.config.autopilot import AutopilotKind
 from companion.config.companion import CompanionConfig
 from companion.config.integrity import IntegrityConfig
+from companion.integrity.vehicle_data import course_off_max_rad
 
 MOTION = ("LOCAL_POSITION_NED", "ATTITUDE_QUATERNION")
 _MOTION_RATE_MIN_HZ = 40.0
@@ -194,7 +195,8 @@ def _heading(seen: VehicleFacts, config: IntegrityConfig) -> list[Finding]:
         return [make_finding("vehicle heading", text, Level.WARN, advice, "its own course hardly shows how it turns")]
     if seen.heading_off_rad is None:
         return []
-    level = pass_or(abs(seen.heading_off_rad) <= config.heading_off_max_rad, Level.FAIL)
+    most_rad = course_off_max_rad(seen.compared_speed_m_s, config, is_afloat=seen.is_afloat)
+    level = pass_or(most_rad is None or abs(seen.heading_off_rad) <= most_rad, Level.FAIL)
     text = f"{abs(math.degrees(seen.heading_off_rad)):.0f} degrees off its course"
     advice = "see its compass, the IMU's mounting and axes; reversing is 180 degrees, so drive forwards"
     return [make_finding("vehicle heading", text, level, advice, "the pad is not placed by it")]

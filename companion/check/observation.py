@@ -60,6 +60,8 @@ class VehicleFacts:
         antenna_behind_pad_m: by which the antenna is behind the pad's middle, as the vehicle describes it; 0 before.
         tells_heading: it does.
         heading_off_rad: mean angle from its course to its heading while it drove; None when it stood or told none.
+        compared_speed_m_s: mean speed over ground at which these were compared; 0 when none were.
+        is_afloat: it is a vessel, as it describes itself; not before it does.
     """
 
     key: str
@@ -73,6 +75,8 @@ class VehicleFacts:
     antenna_behind_pad_m: float = 0.0
     tells_heading: bool = False
     heading_off_rad: float | None = None
+    compared_speed_m_s: float = 0.0
+    is_afloat: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -179,6 +179,24 @@ def test_heading_that_follows_the_course_passes() -> None:
     assert by_name["vehicle heading"].level is Level.PASS
 
 
+@pytest.mark.parametrize(
+    ("off_rad", "speed_m_s", "is_afloat", "level"),
+    [
+        (0.4, 2.2, True, Level.PASS),
+        (0.4, 2.2, False, Level.FAIL),
+        (0.4, 10.0, True, Level.FAIL),
+        (-math.pi / 2.0, 2.2, True, Level.FAIL),
+        (math.pi, 1.4, True, Level.PASS),
+    ],
+)
+def test_heading_of_a_vessel_may_be_off_by_its_drift(
+    off_rad: float, speed_m_s: float, *, is_afloat: bool, level: Level
+) -> None:
+    seen = replace(VEHICLE, heading_off_rad=off_rad, compared_speed_m_s=speed_m_s, is_afloat=is_afloat)
+    by_name = {one.name: one for one in assess(GOOD, seen, 10.0, CONFIG)}
+    assert by_name["vehicle heading"].level is level
+
+
 def test_advised_values_make_an_arducopter_pass() -> None:
     seen = replace(GOOD, autopilot_id=mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA, version=(4, 6, 0), parameters=ARDUCOPTER_46)
     before = assess(seen, VEHICLE, 12.0, CONFIG)
