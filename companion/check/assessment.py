@@ -12,6 +12,7 @@ from companion.config.autopilot import AutopilotKind
 from companion.config.companion import CompanionConfig
 from companion.config.integrity import IntegrityConfig
 from companion.integrity.vehicle_data import course_off_max_rad
+from companion.vehicle.pad_reach import pad_width_min_m
 
 MOTION = ("LOCAL_POSITION_NED", "ATTITUDE_QUATERNION")
 _MOTION_RATE_MIN_HZ = 40.0
@@ -174,17 +175,21 @@ def assess_vehicle(seen: VehicleFacts, config: CompanionConfig, *, is_expected: 
         advice = "start the ground vehicle, or check --ns, --vehicle and -e"
         level = Level.FAIL if is_expected else Level.WARN
         return [make_finding("vehicle", f"nothing on {seen.key}", level, advice)]
-    refused = "not described" if seen.pad_refused_why is None else f"refused: {seen.pad_refused_why}"
-    pad = make_finding(
-        "vehicle pad",
-        "described" if seen.describes_pad else refused,
-        pass_or(seen.describes_pad, Level.FAIL),
-        "let the vehicle answer for its pad" if seen.pad_refused_why is None else "mend the vehicle's description",
-    )
     level = pass_or(seen.rate_hz >= _FIX_RATE_MIN_HZ, Level.WARN)
     rate = make_finding("vehicle fixes", f"{seen.rate_hz:.1f} Hz", level, "set its receiver to 5 Hz or more")
     known = [_age(seen, config), _accuracy(seen, config.abort.position_std_max_m)]
-    return [rate, *known, *_heading(seen, config.integrity), pad]
+    return [rate, *known, *_heading(seen, config.integrity), _pad(seen, config)]
+
+
+def _pad(seen: VehicleFacts, config: CompanionConfig) -> Finding:
+    if not seen.describes_pad:
+        refused = "not described" if seen.pad_refused_why is None else f"refused: {seen.pad_refused_why}"
+        advice = "let the vehicle answer for its pad" if seen.pad_refused_why is None else "mend its description"
+        return make_finding("vehicle pad", refused, Level.FAIL, advice)
+    if seen.pad_width_m < pad_width_min_m(config):
+        advice = f"use one of {pad_width_min_m(config):.2f} m and more"
+        return make_finding("vehicle pad", f"{seen.pad_width_m:.2f} m wide", Level.FAIL, advice, "a start is refused")
+    return pass_line("vehicle pad", "described")
 
 
 def _heading(seen: VehicleFacts, config: IntegrityConfig) -> list[Finding]:

@@ -98,5 +98,6 @@ class VehicleReader:
             tells_heading=self._heading is not None,
             heading_off_rad=cmath.phase(sum(self._offs)) if len(self._offs) >= _COMPARED_MIN else None,
             compared_speed_m_s=statistics.fmean(self._speeds_m_s) if self._speeds_m_s else 0.0,
+            pad_width_m=math.inf if pad.pad is None else min(pad.pad.size_m),
             is_afloat=pad.pad is not None and pad.pad.is_afloat,
         )

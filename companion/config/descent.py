@@ -93,7 +93,6 @@ class SwayConfig(StrictModel):
 class DescentConfig(StrictModel):
     """From the alignment to the contact."""
 
-    pad_width_min_m: Positive = 0.5  # narrower ones are refused: the cone would end narrower than 0.1 m
     stray_hold_s: NotNegative = 3.0  # beside the cone or too fast, but high enough to be aligned again
     strays_max: Annotated[int, Field(ge=0, le=20)] = 3  # so often in one approach, as retries: a gust may last
     commit_height_m: Positive = 0.35  # below this it lands rather than aborts

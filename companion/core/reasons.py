@@ -140,7 +140,7 @@ class Reason(Enum):
         "its velocity, its stamps, its receiver"
     )
     BATTERY_LOW = "battery at {:.0f} %, limits.battery_min_share is {:.0f} %: charge it"
-    PAD_TOO_SMALL = "pad is {:.2f} m wide, descent.pad_width_min_m is {:.2f}: use a larger pad"
+    PAD_TOO_SMALL = "pad is {:.2f} m wide, {:.2f} m are needed for feet {:.2f} m about the axis: use a larger pad"
     ROAD_ELSEWHERE = "the vehicle's road {}"
     ROOF_TOO_HIGH = (
         "waiting {:.1f} m above the pad, {:.1f} m are needed: raise takeoff.waiting_height_m by {:.1f} m or hover "

@@ -131,6 +131,7 @@ def test_what_the_companion_would_not_fly_fails_by_its_type(vehicle_type: int) -
         ({"std_m": 5.0}, "vehicle accuracy", Level.FAIL),
         ({"std_m": None}, "vehicle accuracy", Level.WARN),
         ({"describes_pad": False}, "vehicle pad", Level.FAIL),
+        ({"pad_width_m": 0.6}, "vehicle pad", Level.FAIL),
         ({"describes_pad": False, "pad_refused_why": "antenna_to_pad_m.0: 60"}, "vehicle pad", Level.FAIL),
     ],
 )

@@ -140,6 +140,7 @@ def test_pad_is_asked_for_until_the_vehicle_has_heard_the_question(monkeypatch: 
     assert facts.describes_pad
     assert facts.antenna_behind_pad_m == PAD.antenna_to_pad_m[0]
     assert facts.is_afloat
+    assert facts.pad_width_m == 1.2
     assert took_s == pytest.approx(4.0, abs=0.1)
 
 

@@ -6,9 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from companion.config.integrity import ReceiverFrames
-from companion.core.data import Measurement, Quantity
+from companion.core.data import FIXED_STD_MAX_M, Measurement, Quantity
 from companion.integrity.sightings import (
-    FIXED_STD_MAX_M,
     FixedPhases,
     are_frames_one,
     update_fixed_phases,
