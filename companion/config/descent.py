@@ -75,7 +75,8 @@ class UnseenConfig(StrictModel):
     # as that, while the drone and the vehicle's clock wander.
     std_max_m: Positive = 0.25
     hold_s: NotNegative = 1.5  # in the alignment, before it climbs to see more of the road
-    # So often in one approach it has to be seen (again): 3 times at most in 60 landings over poor links.
+    # So often in one approach it has to be seen (again): 3 times at most in 60 landings over poor links. So often, too,
+    # the heading that places it may become vague.
     anew_max: Annotated[int, Field(ge=0, le=100)] = 10
 
 
