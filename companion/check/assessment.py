@@ -151,6 +151,7 @@ def _range_finder(seen: AutopilotFacts) -> Finding:
 
 
 _FIX_RATE_MIN_HZ = 4.0
+_FIX_RATE_ALONE_MIN_HZ = 8.0  # without a velocity: a change of speed has to be seen in places alone
 _FIX_AGE_SHARE = 0.5  # of what aborts a landing
 _FIX_STD_GOOD_M = 0.3
 # At 3 m/s an antenna farther behind leaves the pad unknown by 0.3 m, S2's limit: a heading by sqrt(2 L^3 q / v^5), with
@@ -175,8 +176,10 @@ def assess_vehicle(seen: VehicleFacts, config: CompanionConfig, *, is_expected: 
         advice = "start the ground vehicle, or check --ns, --vehicle and -e"
         level = Level.FAIL if is_expected else Level.WARN
         return [make_finding("vehicle", f"nothing on {seen.key}", level, advice)]
-    level = pass_or(seen.rate_hz >= _FIX_RATE_MIN_HZ, Level.WARN)
-    rate = make_finding("vehicle fixes", f"{seen.rate_hz:.1f} Hz", level, "set its receiver to 5 Hz or more")
+    least_hz = _FIX_RATE_MIN_HZ if seen.has_velocity else _FIX_RATE_ALONE_MIN_HZ
+    level = pass_or(seen.rate_hz >= least_hz, Level.WARN)
+    advice = "set its receiver to 5 Hz or more" + ("" if seen.has_velocity else "; to 10 Hz while it tells no velocity")
+    rate = make_finding("vehicle fixes", f"{seen.rate_hz:.1f} Hz", level, advice)
     known = [_age(seen, config), _accuracy(seen, config.abort.position_std_max_m)]
     return [rate, *known, *_heading(seen, config.integrity), _pad(seen, config)]
 

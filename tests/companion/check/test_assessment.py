@@ -121,6 +121,7 @@ def test_what_the_companion_would_not_fly_fails_by_its_type(vehicle_type: int) -
         ({"rate_hz": 0.0}, "vehicle", Level.WARN),
         ({"rate_hz": 0.0, "fix_refused_why": "the receiver has no fix"}, "vehicle", Level.FAIL),
         ({"rate_hz": 1.0}, "vehicle fixes", Level.WARN),
+        ({"rate_hz": 5.0, "has_velocity": False}, "vehicle fixes", Level.WARN),
         ({"age_s": 2.0}, "vehicle age", Level.FAIL),
         ({"age_s": -3600.0}, "vehicle age", Level.FAIL),
         ({"age_s": None}, "vehicle age", Level.WARN),
@@ -173,6 +174,13 @@ def test_endpoints_say_where_a_vehicle_is_met(given: dict[str, Any], *, are_give
 )
 def test_course_shows_the_heading_unless_the_antenna_is_far_behind_the_pad(changed: dict[str, Any]) -> None:
     assert "vehicle heading" not in {one.name for one in assess(GOOD, replace(VEHICLE, **changed), 10.0, CONFIG)}
+
+
+@pytest.mark.parametrize(("rate_hz", "has_velocity"), [(5.0, True), (10.0, False)])
+def test_rate_that_shows_the_speed_passes(rate_hz: float, *, has_velocity: bool) -> None:
+    seen = replace(VEHICLE, rate_hz=rate_hz, has_velocity=has_velocity)
+    by_name = {one.name: one for one in assess(GOOD, seen, 10.0, CONFIG)}
+    assert by_name["vehicle fixes"].level is Level.PASS
 
 
 def test_heading_that_follows_the_course_passes() -> None:
