@@ -11,6 +11,8 @@ from companion.check.rules import judge
 from companion.config.autopilot import AutopilotKind
 from companion.config.companion import CompanionConfig
 from companion.config.integrity import IntegrityConfig
+from companion.integrity.vehicle_data import course_off_max_rad
+from companion.vehicle.pad_reach import pad_width_min_m
 
 MOTION = ("LOCAL_POSITION_NED", "ATTITUDE_QUATERNION")
 _MOTION_RATE_MIN_HZ = 40.0
@@ -149,6 +151,7 @@ def _range_finder(seen: AutopilotFacts) -> Finding:
 
 
 _FIX_RATE_MIN_HZ = 4.0
+_FIX_RATE_ALONE_MIN_HZ = 8.0  # without a velocity: a change of speed has to be seen in places alone
 _FIX_AGE_SHARE = 0.5  # of what aborts a landing
 _FIX_STD_GOOD_M = 0.3
 # At 3 m/s an antenna farther behind leaves the pad unknown by 0.3 m, S2's limit: a heading by sqrt(2 L^3 q / v^5), with
@@ -173,17 +176,23 @@ def assess_vehicle(seen: VehicleFacts, config: CompanionConfig, *, is_expected: 
         advice = "start the ground vehicle, or check --ns, --vehicle and -e"
         level = Level.FAIL if is_expected else Level.WARN
         return [make_finding("vehicle", f"nothing on {seen.key}", level, advice)]
-    refused = "not described" if seen.pad_refused_why is None else f"refused: {seen.pad_refused_why}"
-    pad = make_finding(
-        "vehicle pad",
-        "described" if seen.describes_pad else refused,
-        pass_or(seen.describes_pad, Level.FAIL),
-        "let the vehicle answer for its pad" if seen.pad_refused_why is None else "mend the vehicle's description",
-    )
-    level = pass_or(seen.rate_hz >= _FIX_RATE_MIN_HZ, Level.WARN)
-    rate = make_finding("vehicle fixes", f"{seen.rate_hz:.1f} Hz", level, "set its receiver to 5 Hz or more")
+    least_hz = _FIX_RATE_MIN_HZ if seen.has_velocity else _FIX_RATE_ALONE_MIN_HZ
+    level = pass_or(seen.rate_hz >= least_hz, Level.WARN)
+    advice = "set its receiver to 5 Hz or more" + ("" if seen.has_velocity else "; to 10 Hz while it tells no velocity")
+    rate = make_finding("vehicle fixes", f"{seen.rate_hz:.1f} Hz", level, advice)
     known = [_age(seen, config), _accuracy(seen, config.abort.position_std_max_m)]
-    return [rate, *known, *_heading(seen, config.integrity), pad]
+    return [rate, *known, *_heading(seen, config.integrity), _pad(seen, config)]
+
+
+def _pad(seen: VehicleFacts, config: CompanionConfig) -> Finding:
+    if not seen.describes_pad:
+        refused = "not described" if seen.pad_refused_why is None else f"refused: {seen.pad_refused_why}"
+        advice = "let the vehicle answer for its pad" if seen.pad_refused_why is None else "mend its description"
+        return make_finding("vehicle pad", refused, Level.FAIL, advice)
+    if seen.pad_width_m < pad_width_min_m(config):
+        advice = f"use one of {pad_width_min_m(config):.2f} m and more"
+        return make_finding("vehicle pad", f"{seen.pad_width_m:.2f} m wide", Level.FAIL, advice, "a start is refused")
+    return pass_line("vehicle pad", "described")
 
 
 def _heading(seen: VehicleFacts, config: IntegrityConfig) -> list[Finding]:
@@ -194,7 +203,8 @@ def _heading(seen: VehicleFacts, config: IntegrityConfig) -> list[Finding]:
         return [make_finding("vehicle heading", text, Level.WARN, advice, "its own course hardly shows how it turns")]
     if seen.heading_off_rad is None:
         return []
-    level = pass_or(abs(seen.heading_off_rad) <= config.heading_off_max_rad, Level.FAIL)
+    most_rad = course_off_max_rad(seen.compared_speed_m_s, config, is_afloat=seen.is_afloat)
+    level = pass_or(most_rad is None or abs(seen.heading_off_rad) <= most_rad, Level.FAIL)
     text = f"{abs(math.degrees(seen.heading_off_rad)):.0f} degrees off its course"
     advice = "see its compass, the IMU's mounting and axes; reversing is 180 degrees, so drive forwards"
     return [make_finding("vehicle heading", text, level, advice, "the pad is not placed by it")]

@@ -1,5 +1,6 @@
 """What a check has seen of an autopilot, a vehicle and a detector of the pad, as plain data."""
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
@@ -60,6 +61,9 @@ class VehicleFacts:
         antenna_behind_pad_m: by which the antenna is behind the pad's middle, as the vehicle describes it; 0 before.
         tells_heading: it does.
         heading_off_rad: mean angle from its course to its heading while it drove; None when it stood or told none.
+        compared_speed_m_s: mean speed over ground at which these were compared; 0 when none were.
+        pad_width_m: of the pad's narrower side, as it describes it; infinite before.
+        is_afloat: it is a vessel, as it describes itself; not before it does.
     """
 
     key: str
@@ -73,6 +77,9 @@ class VehicleFacts:
     antenna_behind_pad_m: float = 0.0
     tells_heading: bool = False
     heading_off_rad: float | None = None
+    compared_speed_m_s: float = 0.0
+    is_afloat: bool = False
+    pad_width_m: float = math.inf
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -34,6 +34,7 @@ class VehicleReader:
         self._has_velocity = False
         self._heading: tuple[int, float] | None = None
         self._offs: list[complex] = []
+        self._speeds_m_s: list[float] = []
 
     def fix(self, payload: bytes, arrived_ns: int, utc_ns: int | None) -> None:
         """Take a fix that arrived at local time `arrived_ns`, UTC `utc_ns` where that is known."""
@@ -59,11 +60,13 @@ class VehicleReader:
         except PayloadError:
             return
         east_m_s, north_m_s, _ = message.velocity_enu_m_s
-        if self._heading is None or math.hypot(east_m_s, north_m_s) < self._course_speed_min_m_s:
+        speed_m_s = math.hypot(east_m_s, north_m_s)
+        if self._heading is None or speed_m_s < self._course_speed_min_m_s:
             return
         heard_ns, yaw_rad = self._heading
         if abs(message.t_ns - heard_ns) <= _HEADING_AGE_MAX_NS:
             self._offs.append(cmath.rect(1.0, yaw_rad - math.atan2(north_m_s, east_m_s)))
+            self._speeds_m_s.append(speed_m_s)
 
     def imu(self, payload: bytes) -> None:
         """Take its heading, where it tells one."""
@@ -94,4 +97,7 @@ class VehicleReader:
             antenna_behind_pad_m=0.0 if pad.pad is None else pad.pad.antenna_to_pad_m[0],
             tells_heading=self._heading is not None,
             heading_off_rad=cmath.phase(sum(self._offs)) if len(self._offs) >= _COMPARED_MIN else None,
+            compared_speed_m_s=statistics.fmean(self._speeds_m_s) if self._speeds_m_s else 0.0,
+            pad_width_m=math.inf if pad.pad is None else min(pad.pad.size_m),
+            is_afloat=pad.pad is not None and pad.pad.is_afloat,
         )

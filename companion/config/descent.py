@@ -75,7 +75,8 @@ class UnseenConfig(StrictModel):
     # as that, while the drone and the vehicle's clock wander.
     std_max_m: Positive = 0.25
     hold_s: NotNegative = 1.5  # in the alignment, before it climbs to see more of the road
-    # So often in one approach it has to be seen (again): 3 times at most in 60 landings over poor links.
+    # So often in one approach it has to be seen (again): 3 times at most in 60 landings over poor links. So often, too,
+    # the heading that places it may become vague.
     anew_max: Annotated[int, Field(ge=0, le=100)] = 10
 
 
@@ -93,7 +94,6 @@ class SwayConfig(StrictModel):
 class DescentConfig(StrictModel):
     """From the alignment to the contact."""
 
-    pad_width_min_m: Positive = 0.5  # narrower ones are refused: the cone would end narrower than 0.1 m
     stray_hold_s: NotNegative = 3.0  # beside the cone or too fast, but high enough to be aligned again
     strays_max: Annotated[int, Field(ge=0, le=20)] = 3  # so often in one approach, as retries: a gust may last
     commit_height_m: Positive = 0.35  # below this it lands rather than aborts

@@ -34,3 +34,6 @@ class IntegrityConfig(StrictModel):
     # end of the benchmark's lever arm of 1.3 m; side slip and mounting are less.
     course_speed_min_m_s: Positive = 2.0
     heading_off_max_rad: Annotated[float, Field(gt=0.0, lt=1.0)] = 0.21
+    # A vessel's heading may be off by as much more as wind and current of this speed turn its course: 3 knots, as
+    # spring tides run in estuaries. At 2.2 m/s over ground these are 43 degrees, at 10 m/s 9.
+    vessel_drift_max_m_s: NotNegative = 1.5

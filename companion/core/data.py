@@ -15,6 +15,11 @@ from link.messages import Quaternion, Vector3
 
 Array = NDArray[np.float64]
 
+_LIGHT_M_S = 299_792_458.0
+_L1_HZ = 1575.42e6
+FIXED_STD_MAX_M = 0.25 * _LIGHT_M_S / _L1_HZ
+"""Horizontal, that a receiver with fixed phases states at most: 0.048 m."""
+
 STEP_MAX_S = 0.1
 """A longer pause between two steps counts for so much: nothing that moves with the steps jumps."""
 

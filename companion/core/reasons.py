@@ -102,6 +102,7 @@ class Reason(Enum):
     # Where on the vehicle the pad is, is not known.
     PAD_NOT_DESCRIBED = "the vehicle has not described its pad"
     HEADING_UNKNOWN = "vehicle heading unknown"
+    HEADING_LOST = "vehicle heading too vague for its pad"
     HEADING_OFF_COURSE = "vehicle heading is {:.0f} degrees off its course"
 
     # No other approach is made.
@@ -140,7 +141,7 @@ class Reason(Enum):
         "its velocity, its stamps, its receiver"
     )
     BATTERY_LOW = "battery at {:.0f} %, limits.battery_min_share is {:.0f} %: charge it"
-    PAD_TOO_SMALL = "pad is {:.2f} m wide, descent.pad_width_min_m is {:.2f}: use a larger pad"
+    PAD_TOO_SMALL = "pad is {:.2f} m wide, {:.2f} m are needed for feet {:.2f} m about the axis: use a larger pad"
     ROAD_ELSEWHERE = "the vehicle's road {}"
     ROOF_TOO_HIGH = "waiting {:.1f} m above the pad, {:.1f} m are needed: {}"
 

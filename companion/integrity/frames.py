@@ -20,13 +20,8 @@ from msgspec import Struct
 from companion.autopilots.driver import Receiver
 from companion.autopilots.frame_moves import NO_MOVES, FrameMoves, stepped_in_frame_m
 from companion.config.integrity import ReceiverFrames
-from companion.core.data import Measurement, Quantity
+from companion.core.data import FIXED_STD_MAX_M, Measurement, Quantity
 from link.records import replace
-
-_LIGHT_M_S = 299_792_458.0
-_L1_HZ = 1575.42e6
-FIXED_STD_MAX_M = 0.25 * _LIGHT_M_S / _L1_HZ
-"""Horizontal, that a receiver with fixed phases states at most: 0.048 m."""
 
 _HOLD_S = 2.0  # two of the autopilot's reports of its receiver
 

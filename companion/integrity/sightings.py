@@ -16,8 +16,7 @@ from msgspec import Struct
 
 from companion.config.companion import CompanionConfig
 from companion.config.integrity import ReceiverFrames
-from companion.core.data import Quantity
-from companion.integrity.frames import FIXED_STD_MAX_M
+from companion.core.data import FIXED_STD_MAX_M, Quantity
 from companion.situation.situation import Situation
 from companion.vehicle.estimator import BufferHealth
 from companion.vehicle.pad import PadPath

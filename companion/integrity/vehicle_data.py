@@ -7,7 +7,9 @@ again: its estimate swings between the two. Outages and brakes have a few reject
 
 A heading from a magnetometer beside steel, or one with its axes mixed up, turns the lever arm from the antenna to the
 pad: by 20 degrees the benchmark's pad is half a metre off, by 180 degrees it is beside the vehicle. The course tells,
-wherever the vehicle drives; in a curve a car heads a little away from it. One that reverses goes backwards by right:
+wherever the vehicle drives; in a curve a car heads a little away from it. A vessel heads where it goes through the
+water, and wind and current carry that along: at a speed V over ground those of u turn its course from its heading by
+asin(u / V) at most, and below u by any angle. One that reverses goes backwards by right:
 that is believed of a vehicle whose heading has agreed with its course before, and of no other.
 """
 
@@ -18,7 +20,7 @@ from operator import add, gt
 from msgspec import Struct
 
 from companion.config.companion import CompanionConfig
-from companion.config.integrity import ReceiverFrames
+from companion.config.integrity import IntegrityConfig, ReceiverFrames
 from companion.core.data import STEP_MAX_S, Quantity
 from companion.core.reasons import Cause, Reason
 from companion.situation.situation import Situation
@@ -138,17 +140,29 @@ def update_course(
     )
     slip_rad = max(_CAR_M, pad.mounting.arm_m) * abs(vx * ay - vy * ax) / speed_m_s**3
     unsure_rad = _COURSE_STDS * speed_std_m_s / speed_m_s
-    return watch if compared_s < _COURSE_OVER_S else _judge(watch, _off_max_rad(pad, config) + unsure_rad, slip_rad)
+    off_max_rad = _off_max_rad(pad, speed_m_s, config)
+    if compared_s < _COURSE_OVER_S or off_max_rad is None:
+        return watch
+    return _judge(watch, off_max_rad + unsure_rad, slip_rad)
 
 
-def _off_max_rad(pad: PadPath, config: CompanionConfig) -> float:
-    """Return by how much the heading may be off the course.
+def course_off_max_rad(speed_m_s: float, config: IntegrityConfig, *, is_afloat: bool) -> float | None:
+    """Return by how much a heading may be off the course at a speed over ground, None where it may be by any angle."""
+    if not is_afloat:
+        return config.heading_off_max_rad
+    if speed_m_s <= config.vessel_drift_max_m_s:
+        return None
+    return config.heading_off_max_rad + math.asin(config.vessel_drift_max_m_s / speed_m_s)
 
-    At the end of a long arm a pad that has not been seen is off by S2's limit before a car's heading is. A vessel is
-    set by wind and current: its course says less.
+
+def _off_max_rad(pad: PadPath, speed_m_s: float, config: CompanionConfig) -> float | None:
+    """Return by how much this vehicle's heading may be off, None where the course says nothing.
+
+    At the end of a long arm a pad that has not been seen is off by S2's limit before a car's heading is.
     """
-    most_rad, mounting = config.integrity.heading_off_max_rad, pad.mounting
-    if mounting.is_afloat or mounting.arm_m == 0.0 or pad.frame_offset.is_confirmed:
+    mounting = pad.mounting
+    most_rad = course_off_max_rad(speed_m_s, config.integrity, is_afloat=mounting.is_afloat)
+    if most_rad is None or mounting.is_afloat or mounting.arm_m == 0.0 or pad.frame_offset.is_confirmed:
         return most_rad
     return min(most_rad, cone_radius_at_pad_m(pad.half_width_m, config) / mounting.arm_m)
 

@@ -9,12 +9,14 @@ import math
 
 import numpy as np
 
+from companion.autopilots.response import POSITION_STD_M
 from companion.config.companion import CompanionConfig
-from companion.core.data import Array
+from companion.core.data import FIXED_STD_MAX_M, Array
 from companion.vehicle.pad import KNOWN_SHARE, PadPath
 
 _CONE_SHARE = 0.4  # of half of the pad's width: 0.3 m on a pad of 1.5 m
 _CONTACT_SHARE = 0.8  # 0.6 m
+_STDS = 2.0  # of both places, that the feet have room for
 
 
 def cone_radius_at_pad_m(half_width_m: float, config: CompanionConfig) -> float:
@@ -59,7 +61,12 @@ def placed_std_m(pad: PadPath) -> Array:
 
 def is_too_small(pad: PadPath, config: CompanionConfig) -> bool:
     """Return whether the pad is narrower than what a drone can be brought onto."""
-    return 2.0 * pad.half_width_m < config.descent.pad_width_min_m
+    return 2.0 * pad.half_width_m < pad_width_min_m(config)
+
+
+def pad_width_min_m(config: CompanionConfig) -> float:
+    """Return how wide a pad has to be: it has room for the feet, wherever the best receivers' places err to."""
+    return 2.0 * (config.touchdown.foot_radius_m + _STDS * math.hypot(POSITION_STD_M, FIXED_STD_MAX_M))
 
 
 def is_vague(pad: PadPath, config: CompanionConfig) -> bool:

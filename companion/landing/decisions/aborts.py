@@ -16,7 +16,9 @@ from companion.landing.decisions.conditions import (
     MISSED,
     VEHICLE_SILENT,
     Condition,
+    has_lost_heading,
     is_fix_old,
+    is_heading_to_be_shown,
     is_in_contact,
     is_vehicle_taken,
     tell_taken,
@@ -58,6 +60,15 @@ def is_token_lost(s: Situation, c: CompanionConfig) -> bool:
 def is_pad_unplaced(s: Situation, _: CompanionConfig) -> bool:
     """Return whether nobody knows where on the vehicle the pad is: no heading is known, or no description."""
     return s.pad is not None and s.pad.unplaced is not None
+
+
+def _is_place_lost(s: Situation, c: CompanionConfig) -> bool:
+    return is_pad_unplaced(s, c) and not has_lost_heading(s, c)
+
+
+def _tell_place_lost(s: Situation, c: CompanionConfig) -> Cause:
+    is_vague = is_heading_to_be_shown(s, c)
+    return Cause(Reason.HEADING_LOST) if is_vague else why_unplaced(s) or Cause(Reason.HEADING_UNKNOWN)
 
 
 def why_unplaced(s: Situation) -> Cause | None:
@@ -187,8 +198,8 @@ ABORTS = (
     Condition(
         reason=Reason.HEADING_UNKNOWN,
         phases=_DESCENT,
-        is_true=is_pad_unplaced,
-        cause=lambda s, _: why_unplaced(s) or Cause(Reason.HEADING_UNKNOWN),
+        is_true=_is_place_lost,
+        cause=_tell_place_lost,
     ),
     Condition(
         reason=Reason.SETPOINT_NOT_FOLLOWED,

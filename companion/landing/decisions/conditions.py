@@ -17,7 +17,8 @@ from companion.landing.decisions.contact import (
 from companion.landing.decisions.contact_signs import signs_of, signs_text
 from companion.landing.state.memory import Held
 from companion.situation.phases import LANDING_PHASES, Phase
-from companion.situation.situation import Situation
+from companion.situation.situation import Situation, vehicle_stands
+from companion.vehicle.pad import HEADING_UNKNOWN
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -63,6 +64,23 @@ def is_fix_old(s: Situation, c: CompanionConfig) -> bool:
     """Return whether the vehicle has been silent for too long, or out of sight if it tells nothing."""
     age_s = s.vehicle.fix_age_s
     return s.pad is None or age_s is None or age_s > c.abort.fix_age_max_s
+
+
+def is_above_commitment(s: Situation, c: CompanionConfig) -> bool:
+    """Return whether the drone is so high above the pad that it may align again."""
+    return s.approach is not None and s.approach.height_m > c.descent.commit_height_m
+
+
+def is_heading_to_be_shown(s: Situation, c: CompanionConfig) -> bool:
+    """Return whether nothing but a heading that has become vague is missed, which a vehicle shows while it drives."""
+    if s.pad is None or s.pad.yaw_rad is None or s.pad.unplaced != HEADING_UNKNOWN:
+        return False
+    return not vehicle_stands(s, c.chase)
+
+
+def has_lost_heading(s: Situation, c: CompanionConfig) -> bool:
+    """Return whether a drone that may align again waits for the heading."""
+    return is_above_commitment(s, c) and is_heading_to_be_shown(s, c)
 
 
 def _is_silent(s: Situation, c: CompanionConfig) -> bool:

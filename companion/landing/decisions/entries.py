@@ -16,6 +16,8 @@ from companion.landing.decisions.conditions import (
     TOUCHED,
     TOUCHED_BY_DISPUTE,
     Condition,
+    has_lost_heading,
+    is_above_commitment,
     is_fix_old,
 )
 from companion.landing.state.memory import Held
@@ -33,15 +35,11 @@ _WAITING = frozenset({Phase.WAITING})
 
 
 def _must_be_seen_above(s: Situation, c: CompanionConfig) -> bool:
-    return must_be_seen(s, c) and _is_above_commitment(s, c)
+    return must_be_seen(s, c) and is_above_commitment(s, c)
 
 
 def _strays_above(s: Situation, c: CompanionConfig) -> bool:
-    return _is_above_commitment(s, c) and strays(s, c)
-
-
-def _is_above_commitment(s: Situation, c: CompanionConfig) -> bool:
-    return s.approach is not None and s.approach.height_m > c.descent.commit_height_m
+    return is_above_commitment(s, c) and strays(s, c)
 
 
 def _is_aligned(s: Situation, c: CompanionConfig) -> bool:
@@ -137,6 +135,14 @@ TO_BE_SEEN = Condition(
 )
 """Without a hold time, or it slips below."""
 
+HEADING_LOST = Condition(
+    reason=Reason.HEADING_LOST,
+    phases=_DESCENT,
+    is_true=has_lost_heading,
+    anew_max=lambda c: c.descent.unseen.anew_max,
+)
+"""Without a hold time likewise. A bend, or the next straight, shows the heading again."""
+
 NOT_SEEN = Condition(
     reason=Reason.PAD_NOT_SEEN,
     phases=_ALIGNMENT,
@@ -161,6 +167,7 @@ ENTRIES = (
     (Event.VEHICLE_PASSES, VEHICLE_STANDS),
     (Event.ALIGNED, ALIGNED),
     (Event.OUT_OF_ALIGNMENT, TO_BE_SEEN),
+    (Event.OUT_OF_ALIGNMENT, HEADING_LOST),
     (Event.OUT_OF_ALIGNMENT, STRAYS),
     (Event.OUT_OF_ALIGNMENT, ALIGNMENT_LOST),
     (Event.OUT_OF_ALIGNMENT, NOT_SEEN),

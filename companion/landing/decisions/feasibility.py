@@ -23,7 +23,7 @@ from companion.landing.state.memory import Held
 from companion.landing.steering.following_height import chase_floor_m, climb_m, vague_height_m
 from companion.situation.phases import Phase
 from companion.situation.situation import Situation
-from companion.vehicle.pad_reach import is_too_small
+from companion.vehicle.pad_reach import is_too_small, pad_width_min_m
 from link.records import replace
 
 SPEED_SHARE_MIN = 1.15
@@ -104,7 +104,7 @@ def _is_too_narrow(s: Situation, c: CompanionConfig) -> bool:
 
 def _too_narrow(s: Situation, c: CompanionConfig) -> Cause:
     width_m = 0.0 if s.pad is None else 2.0 * s.pad.half_width_m
-    return Cause(Reason.PAD_TOO_SMALL, (width_m, c.descent.pad_width_min_m))
+    return Cause(Reason.PAD_TOO_SMALL, (width_m, pad_width_min_m(c), c.touchdown.foot_radius_m))
 
 
 def _lacks_geoid(s: Situation, _: CompanionConfig) -> bool:

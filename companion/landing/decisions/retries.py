@@ -3,7 +3,13 @@
 from companion.config.companion import CompanionConfig
 from companion.core.reasons import Cause, Reason
 from companion.landing.decisions.aborts import is_out_of_range, why_unplaced
-from companion.landing.decisions.conditions import HEARD, holds, is_attitude_unknown, is_fix_old
+from companion.landing.decisions.conditions import (
+    HEARD,
+    holds,
+    is_attitude_unknown,
+    is_fix_old,
+    is_heading_to_be_shown,
+)
 from companion.landing.decisions.entries import Decision
 from companion.landing.decisions.feasibility import obstacle
 from companion.landing.state.memory import Progress
@@ -39,7 +45,8 @@ def _no_retry(progress: Progress, s: Situation, config: CompanionConfig) -> Caus
         Reason.HEARD_WITH_BREAKS: not holds(HEARD, progress.held, s, config),
     }
     first = next((Cause(reason) for reason, holds_now in known.items() if holds_now), None)
-    first = first or why_unplaced(s)
+    if not (is_heading_to_be_shown(s, config) and progress.cause.reason is not Reason.HEADING_UNKNOWN):
+        first = first or why_unplaced(s)  # a heading that an alignment has waited for in vain is not waited for again
     if first is None and progress.cause.reason in _LASTING:
         first = progress.cause
     if first is None and is_out_of_range(s, config):

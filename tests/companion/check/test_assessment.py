@@ -121,6 +121,7 @@ def test_what_the_companion_would_not_fly_fails_by_its_type(vehicle_type: int) -
         ({"rate_hz": 0.0}, "vehicle", Level.WARN),
         ({"rate_hz": 0.0, "fix_refused_why": "the receiver has no fix"}, "vehicle", Level.FAIL),
         ({"rate_hz": 1.0}, "vehicle fixes", Level.WARN),
+        ({"rate_hz": 5.0, "has_velocity": False}, "vehicle fixes", Level.WARN),
         ({"age_s": 2.0}, "vehicle age", Level.FAIL),
         ({"age_s": -3600.0}, "vehicle age", Level.FAIL),
         ({"age_s": None}, "vehicle age", Level.WARN),
@@ -131,6 +132,7 @@ def test_what_the_companion_would_not_fly_fails_by_its_type(vehicle_type: int) -
         ({"std_m": 5.0}, "vehicle accuracy", Level.FAIL),
         ({"std_m": None}, "vehicle accuracy", Level.WARN),
         ({"describes_pad": False}, "vehicle pad", Level.FAIL),
+        ({"pad_width_m": 0.6}, "vehicle pad", Level.FAIL),
         ({"describes_pad": False, "pad_refused_why": "antenna_to_pad_m.0: 60"}, "vehicle pad", Level.FAIL),
     ],
 )
@@ -174,9 +176,34 @@ def test_course_shows_the_heading_unless_the_antenna_is_far_behind_the_pad(chang
     assert "vehicle heading" not in {one.name for one in assess(GOOD, replace(VEHICLE, **changed), 10.0, CONFIG)}
 
 
+@pytest.mark.parametrize(("rate_hz", "has_velocity"), [(5.0, True), (10.0, False)])
+def test_rate_that_shows_the_speed_passes(rate_hz: float, *, has_velocity: bool) -> None:
+    seen = replace(VEHICLE, rate_hz=rate_hz, has_velocity=has_velocity)
+    by_name = {one.name: one for one in assess(GOOD, seen, 10.0, CONFIG)}
+    assert by_name["vehicle fixes"].level is Level.PASS
+
+
 def test_heading_that_follows_the_course_passes() -> None:
     by_name = {one.name: one for one in assess(GOOD, replace(VEHICLE, heading_off_rad=0.1), 10.0, CONFIG)}
     assert by_name["vehicle heading"].level is Level.PASS
+
+
+@pytest.mark.parametrize(
+    ("off_rad", "speed_m_s", "is_afloat", "level"),
+    [
+        (0.4, 2.2, True, Level.PASS),
+        (0.4, 2.2, False, Level.FAIL),
+        (0.4, 10.0, True, Level.FAIL),
+        (-math.pi / 2.0, 2.2, True, Level.FAIL),
+        (math.pi, 1.4, True, Level.PASS),
+    ],
+)
+def test_heading_of_a_vessel_may_be_off_by_its_drift(
+    off_rad: float, speed_m_s: float, *, is_afloat: bool, level: Level
+) -> None:
+    seen = replace(VEHICLE, heading_off_rad=off_rad, compared_speed_m_s=speed_m_s, is_afloat=is_afloat)
+    by_name = {one.name: one for one in assess(GOOD, seen, 10.0, CONFIG)}
+    assert by_name["vehicle heading"].level is level
 
 
 def test_advised_values_make_an_arducopter_pass() -> None:

@@ -25,7 +25,7 @@ from link.zenoh.keys import Keys
 KEYS = Keys()
 KEY = bytes(range(32))
 WAKE_UP: Any = SimpleNamespace(set=lambda: None)
-PAD = PadGeometry(size_m=(1.5, 1.2), height_m=1.6, antenna_to_pad_m=(0.8, -0.1, 0.05))
+PAD = PadGeometry(size_m=(1.5, 1.2), height_m=1.6, antenna_to_pad_m=(0.8, -0.1, 0.05), is_afloat=True)
 FIX = cdr.encode(Fix(t_ns=10**18, latitude_rad=0.8, longitude_rad=0.1, altitude_m=400.0))
 
 
@@ -139,6 +139,8 @@ def test_pad_is_asked_for_until_the_vehicle_has_heard_the_question(monkeypatch: 
     facts, took_s = listened(monkeypatch, World(heard_from=2), 4.0)
     assert facts.describes_pad
     assert facts.antenna_behind_pad_m == PAD.antenna_to_pad_m[0]
+    assert facts.is_afloat
+    assert facts.pad_width_m == 1.2
     assert took_s == pytest.approx(4.0, abs=0.1)
 
 

@@ -49,6 +49,7 @@ def test_heading_is_compared_with_the_course_of_a_vehicle_that_drives(course_rad
     assert facts.has_velocity
     assert facts.tells_heading
     assert facts.heading_off_rad == pytest.approx(off_rad, abs=1e-6)
+    assert facts.compared_speed_m_s == pytest.approx(4.0)
 
 
 def test_nothing_is_compared_at_rest_or_long_after() -> None:

@@ -215,6 +215,37 @@ def test_heading_is_judged_by_what_it_is_off_at_the_end_of_the_arm(
     assert (course_after(CourseWatch(), placed).off_rad is not None) is expected
 
 
+@pytest.mark.parametrize("sign", [-1.0, 1.0])
+@pytest.mark.parametrize("speed_m_s", [2.2, 5.0, 10.0])
+def test_vessel_may_head_as_far_off_its_course_as_a_current_turns_it(sign: float, speed_m_s: float) -> None:
+    """Closed form: the heading of the motion through the water is that of the course less the current across it."""
+    drift_m_s = CONFIG.integrity.vessel_drift_max_m_s
+    through_water_m_s = math.sqrt(speed_m_s**2 - drift_m_s**2)
+    limit_rad = (
+        math.atan2(drift_m_s, through_water_m_s) + CONFIG.integrity.heading_off_max_rad + 3.0 * STD_M_S / speed_m_s
+    )
+    for more_rad, expected in ((-0.01, False), (0.01, True)):
+        pad = driving(sign * (limit_rad + more_rad), speed_m_s)
+        assert is_off(replace(pad, mounting=PadMounting(arm_m=1.3, is_afloat=True))) is expected
+
+
+@pytest.mark.parametrize("degrees", [90.0, 180.0])
+def test_vessel_with_exchanged_axes_is_found_from_the_speed_on_that_has_a_course(degrees: float) -> None:
+    pad = driving(math.radians(degrees), CONFIG.integrity.course_speed_min_m_s)
+    assert is_off(replace(pad, mounting=PadMounting(arm_m=1.3, is_afloat=True)))
+
+
+def test_vessel_slower_than_its_current_is_neither_right_nor_wrong() -> None:
+    slowly = CONFIG.integrity.model_copy(update={"course_speed_min_m_s": 1.0})
+    config = CONFIG.model_copy(update={"integrity": slowly})
+    pad = replace(driving(math.pi, 1.4), mounting=PadMounting(arm_m=1.3, is_afloat=True))
+    for before in (CourseWatch(), CourseWatch(off_rad=1.0)):
+        watch = before
+        for step in range(1, round(6.0 / STEP_S) + 1):
+            watch = update_course(watch, round(step * STEP_S * 1e9), pad, STD_M_S, config)
+        assert (watch.off_rad, watch.has_agreed) == (before.off_rad, False)
+
+
 def test_vehicle_that_was_never_seen_to_go_forwards_does_not_reverse_by_right() -> None:
     assert is_off(driving(math.pi))
 

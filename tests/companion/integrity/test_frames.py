@@ -8,9 +8,8 @@ from hypothesis import strategies as st
 from companion.autopilots.driver import Receiver
 from companion.autopilots.frame_moves import NO_MOVES, FrameMoves
 from companion.config.integrity import ReceiverFrames
-from companion.core.data import Measurement, Quantity
+from companion.core.data import FIXED_STD_MAX_M, Measurement, Quantity
 from companion.integrity.frames import (
-    FIXED_STD_MAX_M,
     FixedPhases,
     are_frames_one,
     has_lost_fix,

@@ -11,9 +11,8 @@ from companion.autopilots.frame_moves import FrameMoves
 from companion.config.companion import CompanionConfig
 from companion.config.estimation import EstimatorKind
 from companion.config.integrity import IntegrityConfig, ReceiverFrames
-from companion.core.data import Measurement, Quantity
+from companion.core.data import FIXED_STD_MAX_M, Measurement, Quantity
 from companion.core.reasons import Cause, Reason
-from companion.integrity.frames import FIXED_STD_MAX_M
 from companion.integrity.sightings import (
     SightingWatch,
     do_sightings_disagree,

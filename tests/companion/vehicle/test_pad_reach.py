@@ -12,8 +12,10 @@ from companion.situation.situation import Situation
 from companion.vehicle.pad_reach import (
     cone_radius_at_pad_m,
     cone_radius_m,
+    is_too_small,
     is_unseen,
     over_pad_radius_m,
+    pad_width_min_m,
     unseen_std_max_m,
 )
 from link.messages import Command
@@ -21,7 +23,7 @@ from link.records import replace
 from tests.companion.facts import CONFIG, changed, pad_at, reference_at, situation
 from tests.companion.world import PAD, Flight
 
-SMALL_M = 0.5
+SMALL_M = 0.7
 
 
 def standing(beside_m: float, width_m: float) -> Situation:
@@ -63,11 +65,22 @@ def test_small_pad_has_to_be_seen_more_exactly() -> None:
     assert is_unseen(replace(pad, half_width_m=0.5 * SMALL_M), CONFIG)
 
 
+@given(foot_radius_m=st.floats(0.0, 1.0))
+def test_pad_has_room_for_the_feet_beside_two_deviations_of_both_places(foot_radius_m: float) -> None:
+    """Of 0.04 m of the drone's, and 0.0476 m of a vehicle's with fixed phases: 0.1243 m on each side."""
+    touchdown = CONFIG.touchdown.model_copy(update={"foot_radius_m": foot_radius_m})
+    config = CONFIG.model_copy(update={"touchdown": touchdown})
+    width_m = 2.0 * foot_radius_m + 0.2486
+    assert pad_width_min_m(config) == pytest.approx(width_m, abs=2e-4)
+    for more_m, expected in ((-1e-3, True), (1e-3, False)):
+        assert is_too_small(replace(pad_at(), half_width_m=0.5 * (width_m + more_m)), config) is expected
+
+
 def test_start_over_a_pad_that_is_too_small_is_refused_with_its_width() -> None:
     flight = Flight(pad=replace(PAD, size_m=(2.0, 0.4)))
     flight.run(0.1)
     reply = flight.step(Command.START).reply
     assert reply is not None
     assert not reply.accepted
-    assert reply.reason == "pad is 0.40 m wide, descent.pad_width_min_m is 0.50: use a larger pad"
+    assert reply.reason == "pad is 0.40 m wide, 0.65 m are needed for feet 0.20 m about the axis: use a larger pad"
     assert flight.phase is Phase.IDLE

@@ -11,7 +11,7 @@ from companion.landing.decisions.aborts import ABORTS
 from companion.landing.decisions.conditions import Condition
 from companion.landing.decisions.entries import ENTRIES, update_held
 from companion.situation.phases import Event, Phase
-from companion.vehicle.pad import NOT_DESCRIBED
+from companion.vehicle.pad import NOT_DESCRIBED, PadPath
 from companion.vehicle.pad_reach import cone_radius_m
 from link.records import replace
 from tests.companion.facts import (
@@ -43,6 +43,8 @@ def test_landing_goes_on_exactly_after_the_hold_time(event: Event, test: Conditi
             facts = situation(HIGH_M, cone_radius_m(HIGH_M, HALF_M, CONFIG) + 0.01)
         case Event.OUT_OF_ALIGNMENT if test.reason is Reason.ALIGNMENT_LOST:
             facts = situation(HIGH_M, 2.0 * CONFIG.descent.alignment.begin_distance_m + 0.01)
+        case Event.OUT_OF_ALIGNMENT if test.reason is Reason.HEADING_LOST:
+            facts = situation(HIGH_M, pad=pad_at(placed=False))
         case Event.OUT_OF_ALIGNMENT:
             facts = situation(pad=replace(pad_at(std_m=CONFIG.descent.unseen.std_max_m + 0.01), is_coarse=True))
         case _:
@@ -116,6 +118,42 @@ def test_retries_are_counted_down_to_a_hold() -> None:
         assert decision == (Event.CLEAR, Cause(Reason.RETRY, (retries + 1, CONFIG.abort.retries_max)))
     last = replace(progress(Phase.ABORT), retries=CONFIG.abort.retries_max)
     assert decided(last, high, LONG_HEARD) == (Event.CLEAR_TO_HOLD, Cause(Reason.NO_RETRY_LEFT))
+
+
+VAGUE = pad_at(placed=False)
+
+
+@pytest.mark.parametrize(
+    ("pad", "reason"),
+    [
+        (pad_at((0.0, 0.0, 0.0), placed=False), Reason.HEADING_UNKNOWN),
+        (replace(VAGUE, yaw_rad=None), Reason.HEADING_UNKNOWN),
+        (replace(VAGUE, unplaced=NOT_DESCRIBED), Reason.PAD_NOT_DESCRIBED),
+    ],
+    ids=["stands", "unknown", "not described"],
+)
+def test_descent_onto_a_pad_that_no_drive_will_place_is_broken_off(pad: PadPath, reason: Reason) -> None:
+    assert first_decision(Phase.DESCEND, situation(pad=pad), 1.0)[0] == (Event.UNSAFE, Cause(reason))
+
+
+def test_heading_that_is_lost_below_the_commit_height_breaks_the_descent_off() -> None:
+    low = situation(CONFIG.descent.commit_height_m - 0.01, pad=VAGUE)
+    assert first_decision(Phase.DESCEND, low, 1.0)[0] == (Event.UNSAFE, Cause(Reason.HEADING_LOST))
+
+
+@pytest.mark.parametrize(
+    ("broke_off", "expected"),
+    [
+        (Reason.CONTACT_RISKY, (Event.CLEAR, Cause(Reason.RETRY, (1, CONFIG.abort.retries_max)))),
+        (Reason.HEADING_LOST, (Event.CLEAR, Cause(Reason.RETRY, (1, CONFIG.abort.retries_max)))),
+        (Reason.HEADING_UNKNOWN, (Event.CLEAR_TO_HOLD, Cause(Reason.HEADING_UNKNOWN))),
+    ],
+)
+def test_climb_above_a_vague_heading_ends_in_a_hold_only_where_it_was_waited_for_in_vain(
+    broke_off: Reason, expected: tuple[Event, Cause]
+) -> None:
+    climb = replace(progress(Phase.ABORT), cause=Cause(broke_off))
+    assert decided(climb, situation(CONFIG.abort.height_m, pad=VAGUE), LONG_HEARD) == expected
 
 
 def test_bounce_is_seen_above_its_height_only() -> None:

@@ -181,6 +181,19 @@ def test_approach_to_a_pad_that_is_lost_from_sight_again_and_again_is_broken_off
     assert not memory.progress.begun_anew
 
 
+def test_approach_that_loses_the_heading_of_a_vehicle_that_drives_aligns_again_and_costs_no_retry() -> None:
+    memory, facts = changed(StepMemory(), phase=Phase.DESCEND, since_ns=NOW_NS), situation()
+    vague = situation(pad=pad_at(placed=False))
+    for _ in range(DESCENT.unseen.anew_max):
+        memory, facts = _after(memory, at_time(vague, facts.t_ns), 0.1)
+        assert (memory.progress.phase, memory.progress.cause.reason) == (Phase.ALIGN, Reason.HEADING_LOST)
+        memory, facts = _after(memory, at_time(situation(), facts.t_ns), 1.0)
+        assert memory.progress.phase is Phase.DESCEND
+    assert memory.progress.retries == 0
+    memory, facts = _after(memory, at_time(vague, facts.t_ns), 0.1)
+    assert (memory.progress.phase, memory.progress.cause.reason) == (Phase.ABORT, Reason.HEADING_LOST)
+
+
 @pytest.mark.parametrize(
     ("strays", "event"), [(DESCENT.strays_max - 1, Event.OUT_OF_ALIGNMENT), (DESCENT.strays_max, Event.UNSAFE)]
 )

@@ -54,7 +54,7 @@ UNSAFE: dict[Reason, Situation] = {
     ),
     Reason.OWN_POSITION_OLD: replace(situation(), drone=None),
     Reason.OWN_ATTITUDE_OLD: replace(situation(), drone=replace(drone_at(1.5, pad=pad_at()), attitude_known=False)),
-    Reason.HEADING_UNKNOWN: situation(pad=pad_at(placed=False)),
+    Reason.HEADING_UNKNOWN: situation(pad=pad_at((0.0, 0.0, 0.0), placed=False)),
     Reason.SETPOINT_NOT_FOLLOWED: replace(situation(), following=Following(error_m=1.01, error_max_m=1.0)),
     Reason.OUTSIDE_CONE: situation(NEAR_M, cone_radius_m(NEAR_M, HALF_M, CONFIG) + 0.01),
     Reason.TOO_FAST_NEAR_PAD: replace(
