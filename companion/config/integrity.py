@@ -23,7 +23,7 @@ class IntegrityConfig(StrictModel):
     receiver_frames: ReceiverFrames = ReceiverFrames.AUTO
     fix_ahead_max_s: NotNegative = 0.05  # so far in the future a fix may be stamped: what clocks err by
     fix_ahead_hold_s: Positive = 1.0  # each fix of that time is; a late or early one says nothing
-    # Share of the vehicle's measurements of 10 s that the estimator rejects; over poor links with outages 0.07 at most.
+    # Share of one quantity's measurements of 10 s that the estimator rejects; over poor receivers 0.02 at most.
     rejected_share_max: Annotated[float, Field(gt=0.0, le=1.0)] = 0.2
     # A vehicle this near whose road is said to be farther above or below the ground that the drone took off from than a
     # step and a hill can be, has a receiver with another height: a bank beside the road, and a steep street.

@@ -141,9 +141,9 @@ def chances(
         exits_hz: at which rate a bend ends beside the turns that have been seen.
         stands: whether the vehicle does.
     """
-    kinds = (DEPARTS,) if stands else (SLOWS, SPEEDS_UP)
-    pedals = within_s * np.array([0.0, *map(drivers.rate_hz, kinds)])[-2:]
+    slows = 0.0 if stands else within_s * drivers.rate_hz(SLOWS)
+    speeds_up = within_s * drivers.rate_hz(DEPARTS if stands else SPEEDS_UP)
     turns = 0.0 if stands else turns_s * (drivers.rate_hz(TURNS) + exits_hz)
-    by_pedal = pedals * -math.expm1(-pedals.sum()) / pedals.sum()
-    no_pedal = math.exp(-pedals.sum())
-    return np.array([no_pedal * math.exp(-turns), *by_pedal, no_pedal * -math.expm1(-turns)])
+    no_pedal = math.exp(-slows - speeds_up)
+    share = (1.0 - no_pedal) / (slows + speeds_up)
+    return np.array([no_pedal * math.exp(-turns), slows * share, speeds_up * share, no_pedal * -math.expm1(-turns)])

@@ -95,4 +95,5 @@ class TlogSink:
         Raises:
             OSError: Its end is missing.
         """
+        self._writer.sync()
         self._writer.close()

@@ -158,6 +158,7 @@ class McapFile:
         """
         try:
             self._writer.finish()  # type: ignore[no-untyped-call]  # the library leaves its return type out
+            self._file.sync()
         finally:
             self._file.close()
 
@@ -185,8 +186,7 @@ class McapRecording:
 
     def __init__(self, spec: RecordingSpec) -> None:
         self._spec = spec
-        self._count = 0
-        self._skip = 0
+        self._count = self._skip = 0
         self._file: McapFile | None = None
         try:
             spec.folder.mkdir(parents=True, exist_ok=True)
