@@ -100,7 +100,8 @@ def _has_drone_stepped(fixed: FrameMoves, now: FrameMoves) -> bool:
     if now is fixed:
         return False
     (east_m, north_m), (fixed_east_m, fixed_north_m) = stepped_in_frame_m(now), stepped_in_frame_m(fixed)
-    unsure_m = 2.0 * math.sqrt(now.shift_variance_m2 - fixed.shift_variance_m2)
+    # An autopilot that restarts counts anew.
+    unsure_m = 2.0 * math.sqrt(max(now.shift_variance_m2 - fixed.shift_variance_m2, 0.0))
     return math.hypot(east_m - fixed_east_m, north_m - fixed_north_m) > 2.0 * FIXED_STD_MAX_M + unsure_m
 
 

@@ -141,6 +141,11 @@ def test_place_that_steps_before_its_origin_does_has_a_frame_again_with_it() -> 
     assert (stepped.has_stepped, told.has_stepped) == (True, False)
 
 
+def test_autopilot_that_restarts_and_counts_no_steps_any_more_raises_nothing() -> None:
+    restarted = update(replace(after(FIXED), fixed_moves=moved((0.7, 0.0, 0.0), std_m=0.1)), [], LATER_NS)
+    assert restarted.has_stepped
+
+
 @pytest.mark.parametrize(("anew", "is_one"), [("drone", True), ("vehicle", False)])
 def test_only_the_receiver_that_has_stepped_vouches_for_itself_by_being_fixed_anew(anew: str, *, is_one: bool) -> None:
     moves = moved((0.5, -0.4, 0.0))
