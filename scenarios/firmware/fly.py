@@ -153,7 +153,7 @@ class _Flight:
         self._watcher = Watcher(zenoh, keys, self.recording)
         self._datum = datum_of(scenario.run.datum)
         self._stepped_ns = 0
-        self._ship_sails = False
+        self._ship_lies = self._ship_sails = False
         pad = json_messages.encode(self._vehicle.pad)
         zenoh.serve(keys.pad, lambda _: pad)
         zenoh.declare_alive(keys.alive)
@@ -184,24 +184,27 @@ class _Flight:
             publications = self._vehicle.step(t_ns, self._watch.drone)
         else:
             self._set_sail(self._options.ship_speed_m_s)
-            publications = self._on_deck(t_ns)
+            publications = self._on_deck(t_ns, self._options.ship_speed_m_s)
         for publication in publications:
             self._zenoh.publish(publication.key, publication.payload, publication.encoding)
 
     def _set_sail(self, speed_m_s: float) -> None:
-        """Let the ship begin once the drone waits for it; until then its start is where it lies."""
+        """Let the ship begin once the drone waits for it; first it only reports, lest it leap to its first report."""
         status = self.recording.status
         waits = status is not None and status.phase == Phase.WAITING.value
-        if self._ship_sails or not waits:
-            return
-        self._ship_sails = True
-        for name, value in (PARAMETERS | {"SIM_SHIP_SPEED": speed_m_s, "SIM_SHIP_ENABLE": 1.0}).items():
-            self._watch.set_parameter(name, value)
+        if waits and not self._ship_lies:
+            self._ship_lies = True
+            for name, value in (PARAMETERS | {"SIM_SHIP_SPEED": 0.0, "SIM_SHIP_ENABLE": 1.0}).items():
+                self._watch.set_parameter(name, value)
+        elif self._watch.ship is not None and not self._ship_sails:
+            self._ship_sails = True
+            self._watch.set_parameter("SIM_SHIP_SPEED", speed_m_s)
 
-    def _on_deck(self, t_ns: int) -> list[Publication]:
+    def _on_deck(self, t_ns: int, ordered_m_s: float) -> list[Publication]:
         report, clock = self._watch.ship, self._watch.session.clock
         reported_ns = None if report is None else clock.boot_to_utc_ns(report.boot_ns)
         if report is None or reported_ns is None:
             return self._vehicle.published(ship_at_rest(t_ns), None)
         radius_m = 0.5 * PARAMETERS["SIM_SHIP_PSIZE"]
-        return self._vehicle.published(ship_at(report, reported_ns, t_ns, self._datum, radius_m), self._watch.drone)
+        ship = ship_at(report, reported_ns, t_ns, self._datum, turn_radius_m=radius_m, ordered_m_s=ordered_m_s)
+        return self._vehicle.published(ship, self._watch.drone)

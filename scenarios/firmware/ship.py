@@ -1,7 +1,8 @@
 """ArduPilot's simulated ship deck as a scenario's vehicle: where its reports, 5 a second, say that it is.
 
-Model: constant speed and turn rate from the newest report on, which is how the simulation moves it. The deck is at the
-height of the drone's home. Frames: W is ENU about the datum; V is the ship's body with its origin in the deck's middle.
+Model: from the newest report on it speeds up to the ordered speed on its circle, which is how the simulation moves it.
+The deck is at the height of the drone's home. Frames: W is ENU about the datum; V is the ship's body with its origin in
+the deck's middle.
 """
 
 import math
@@ -16,6 +17,7 @@ SHIP_SYSTEM_ID = 17  # SIM_SHIP_SYSID
 PARAMETERS = {"SIM_SHIP_PSIZE": 1000.0, "SIM_SHIP_OFS_X": -40.0, "SIM_SHIP_OFS_Y": -1.5}
 """It starts 40 m behind the drone, to the north on a circle of 500 m, which leads by the drone."""
 
+SPEEDS_UP_M_S2 = 3.0  # ArduPilot, libraries/SITL/SIM_Ship.cpp
 _DEGREES_1E7 = math.radians(1e-7)
 
 
@@ -58,7 +60,9 @@ def ship_at_rest(t_ns: int) -> VehicleState:
     )
 
 
-def ship_at(report: ShipReport, reported_ns: int, t_ns: int, datum: Datum, turn_radius_m: float) -> VehicleState:
+def ship_at(
+    report: ShipReport, reported_ns: int, t_ns: int, datum: Datum, *, turn_radius_m: float, ordered_m_s: float
+) -> VehicleState:
     """Return the ship at `t_ns`.
 
     Args:
@@ -67,25 +71,38 @@ def ship_at(report: ShipReport, reported_ns: int, t_ns: int, datum: Datum, turn_
         t_ns: now.
         datum: origin of W, at the deck's height.
         turn_radius_m: of its circle, clockwise.
+        ordered_m_s: speed that it makes for once it moves, not below the report's.
     """
-    speed_m_s, dt_s = report.speed_m_s, (t_ns - reported_ns) * 1e-9
+    way_m, speed_m_s, acceleration_m_s2 = _sailed(report.speed_m_s, ordered_m_s, (t_ns - reported_ns) * 1e-9)
     yaw_rate_rad_s = -speed_m_s / turn_radius_m
-    yaw_rad = report.yaw_rad + yaw_rate_rad_s * dt_s
+    turned_rad = -way_m / turn_radius_m
+    yaw_rad = report.yaw_rad + turned_rad
     x_m, y_m, _ = enu_from_geodetic(datum, report.latitude_rad, report.longitude_rad, datum.altitude_m)
     # Along the chord, which is as long as the arc for as short a way as this.
-    middle_rad = report.yaw_rad + 0.5 * yaw_rate_rad_s * dt_s
+    middle_rad = report.yaw_rad + 0.5 * turned_rad
     cosine, sine = math.cos(yaw_rad), math.sin(yaw_rad)
+    inward_m_s2 = speed_m_s * yaw_rate_rad_s
     return VehicleState(
         t_ns=t_ns,
-        position_enu_m=(
-            x_m + speed_m_s * dt_s * math.cos(middle_rad),
-            y_m + speed_m_s * dt_s * math.sin(middle_rad),
+        position_enu_m=(x_m + way_m * math.cos(middle_rad), y_m + way_m * math.sin(middle_rad), 0.0),
+        velocity_enu_m_s=(speed_m_s * cosine, speed_m_s * sine, 0.0),
+        acceleration_enu_m_s2=(
+            acceleration_m_s2 * cosine - inward_m_s2 * sine,
+            acceleration_m_s2 * sine + inward_m_s2 * cosine,
             0.0,
         ),
-        velocity_enu_m_s=(speed_m_s * cosine, speed_m_s * sine, 0.0),
-        acceleration_enu_m_s2=(-speed_m_s * yaw_rate_rad_s * sine, speed_m_s * yaw_rate_rad_s * cosine, 0.0),
         orientation_wxyz=quaternion_from_yaw(wrap_angle(yaw_rad)),
         angular_velocity_flu_rad_s=(0.0, 0.0, yaw_rate_rad_s),
         yaw_rad=wrap_angle(yaw_rad),
         yaw_rate_rad_s=yaw_rate_rad_s,
     )
+
+
+def _sailed(speed_m_s: float, ordered_m_s: float, dt_s: float) -> tuple[float, float, float]:
+    """Return the way since the report, the speed after it, and the acceleration along it."""
+    if speed_m_s == 0.0:
+        return 0.0, 0.0, 0.0  # when it has been ordered to move is told by the report that it does
+    speeding_up_s = min(dt_s, max(ordered_m_s - speed_m_s, 0.0) / SPEEDS_UP_M_S2)
+    reached_m_s = speed_m_s + SPEEDS_UP_M_S2 * speeding_up_s
+    way_m = 0.5 * (speed_m_s + reached_m_s) * speeding_up_s + reached_m_s * (dt_s - speeding_up_s)
+    return way_m, reached_m_s, SPEEDS_UP_M_S2 if dt_s <= speeding_up_s else 0.0

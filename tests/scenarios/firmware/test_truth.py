@@ -51,7 +51,7 @@ def test_ship_drives_on_its_circle_between_reports() -> None:
         yaw_rad=math.radians(90.0),  # to the north
     )
     angle_rad = speed_m_s * 2.0 / radius_m
-    ship = ship_at(report, 10 * NS, 12 * NS, DATUM, radius_m)
+    ship = ship_at(report, 10 * NS, 12 * NS, DATUM, turn_radius_m=radius_m, ordered_m_s=speed_m_s)
     arc = (radius_m * (1.0 - math.cos(angle_rad)), radius_m * math.sin(angle_rad), 0.0)
     assert ship.position_enu_m == pytest.approx(arc, abs=1e-3)
     assert ship.yaw_rad == pytest.approx(math.radians(90.0) - angle_rad)
@@ -59,12 +59,30 @@ def test_ship_drives_on_its_circle_between_reports() -> None:
     assert math.hypot(*ship.acceleration_enu_m_s2) == pytest.approx(speed_m_s**2 / radius_m)
 
 
+def test_ship_speeds_up_to_what_was_ordered_as_the_simulation_has_it() -> None:
+    sails = ShipReport(
+        boot_ns=0,
+        latitude_rad=DATUM.latitude_rad,
+        longitude_rad=DATUM.longitude_rad,
+        speed_m_s=2.0,
+        yaw_rad=math.radians(90.0),
+    )
+    speeding, full = (
+        ship_at(sails, 0, after_ns, DATUM, turn_radius_m=500.0, ordered_m_s=5.0) for after_ns in (NS // 2, 2 * NS)
+    )
+    assert math.hypot(*speeding.position_enu_m) == pytest.approx(2.0 * 0.5 + 0.5 * 3.0 * 0.5**2, abs=1e-3)
+    assert math.hypot(*speeding.velocity_enu_m_s) == pytest.approx(3.5)
+    assert speeding.acceleration_enu_m_s2[1] == pytest.approx(3.0, abs=1e-2)
+    assert math.hypot(*full.position_enu_m) == pytest.approx(0.5 * (2.0 + 5.0) * 1.0 + 5.0 * 1.0, abs=1e-3)
+    assert math.hypot(*full.velocity_enu_m_s) == pytest.approx(5.0)
+
+
 def test_ship_lies_where_and_as_its_first_report_has_it() -> None:
     latitude_rad, longitude_rad, _ = geodetic_from_enu(DATUM, (-1.5, -40.0, 0.0))
     first = ShipReport(
         boot_ns=0, latitude_rad=latitude_rad, longitude_rad=longitude_rad, speed_m_s=0.0, yaw_rad=math.radians(90.0)
     )
-    lies, sails = ship_at_rest(7 * NS), ship_at(first, 7 * NS, 7 * NS, DATUM, 500.0)
+    lies, sails = ship_at_rest(7 * NS), ship_at(first, 7 * NS, 8 * NS, DATUM, turn_radius_m=500.0, ordered_m_s=5.0)
     assert lies.position_enu_m == pytest.approx(sails.position_enu_m, abs=1e-3)
     assert (lies.t_ns, lies.velocity_enu_m_s, lies.orientation_wxyz) == (
         7 * NS,
