@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from itertools import chain
 
 from companion.autopilots.driver import Driver
+from companion.autopilots.response import RATE_LAG_S
 from companion.core.data import GRAVITY_M_S2
 from link.mavlink.dialect import Message
 from link.mavlink.parameters import parameter_value
@@ -19,7 +20,6 @@ _STATED_MIN = 0.1  # m/s or degrees; a limit below this cannot be flown with
 GAIN_FACTOR_MAX = 4.0  # about a default; the ranges that the firmwares state are narrower
 INTEGRAL_FACTOR_MAX = 40.0  # PX4 states 150 times its default as the end of the range
 TILT_LEAST_DEG = 10.0  # both firmwares' ranges begin here or above; less holds against no wind
-RATE_LAG_S = 0.05  # of turn rates: motors of 0.05 s behind a controller that makes up for what it costs itself
 _TILT_SHARE = 0.85  # of the largest tilt's thrust; the rest is for gusts and for the autopilot's own corrections
 
 

@@ -34,6 +34,8 @@ PUSH_STD_M_S2 = 0.75
 """Of what pushes a drone about: a gust of 3 m/s, moderate turbulence of MIL-F-8785C, at that drag."""
 ATTITUDE_LAG_S = 0.1
 """From a wanted acceleration to the drone's, where no parameter tells it."""
+RATE_LAG_S = 0.05
+"""Of turn rates: motors of 0.05 s behind a controller that makes up for what it costs itself."""
 POSITION_STD_M = 0.04
 """Of a report's position beside the path: a receiver with corrections, and 4 ms of its date at 8 m/s."""
 VELOCITY_STD_M_S = 0.1
@@ -81,8 +83,8 @@ class Cascade(Struct, frozen=True, kw_only=True):
 
     @property
     def lean_lag_s(self) -> float:
-        """By how much the drone's lean is behind what the path asks for."""
-        return 0.0 if self.is_led else 1.0 / self.turns_hz
+        """By how much the drone's lean is behind what the path asks for; a lead makes up for all but its rates'."""
+        return RATE_LAG_S if self.is_led else 1.0 / self.turns_hz
 
     @property
     def path_share(self) -> float:

@@ -39,6 +39,7 @@ from companion.forecast.samples import (
     drive,
 )
 
+_SINKS_M_S = 0.2  # at least, of a drone above the pad that comes to a contact
 _LONGER, _LONGER_WAYS = 1.2, 7  # a way is tried by steps of a fifth, up to three times as long
 
 
@@ -89,7 +90,7 @@ def steer(model: Array, state: Array, off: Array, known: Array, drone: Follower)
 
 @compiled_kernel
 def plan(
-    model: Array, jerk: tuple[float, float], expected: Array, holds: Array, bounds: tuple[float, float, float]
+    model: Array, jerk: tuple[float, float], expected: Array, beside: Array, bounds: tuple[float, float, float]
 ) -> None:
     """Move the virtual model (3, 2) by one step with a jerk, within bounds.
 
@@ -97,20 +98,20 @@ def plan(
         model: off the pad's forecast.
         jerk: as `steer` returns it.
         expected: (2,) acceleration of the forecast.
-        holds: (2,) thrust by mass that holds against the air and makes up for the deviation.
+        beside: (2,) thrust by mass that it leans by beside the path's acceleration.
         bounds: of the jerk (m/s^3), the acceleration, and the horizontal thrust by mass.
     """
     jerk_max_m_s3, most_m_s2, leans_m_s2 = bounds
     share = DT_S * min(1.0, jerk_max_m_s3 / max(math.hypot(jerk[0], jerk[1]), 1e-9))
     bx, by = expected[0] + model[2, 0], expected[1] + model[2, 1]
     ax, ay = bx + jerk[0] * share, by + jerk[1] * share
-    size = max(math.hypot(ax, ay), 1e-9)
-    along_m_s2 = (ax * holds[0] + ay * holds[1]) / size
-    left_m_s2 = leans_m_s2**2 - holds[0] ** 2 - holds[1] ** 2 + along_m_s2**2
-    left_m_s2 = max(math.sqrt(max(left_m_s2, 0.0)) - along_m_s2, 0.0)
-    most_m_s2 = max(min(most_m_s2, left_m_s2), math.hypot(bx, by) - jerk_max_m_s3 * DT_S)
-    back = min(1.0, most_m_s2 / size)
-    model[2, 0], model[2, 1] = ax * back - expected[0], ay * back - expected[1]
+    back = min(1.0, most_m_s2 / max(math.hypot(ax, ay), 1e-9))
+    lx, ly = ax * back + beside[0], ay * back + beside[1]
+    back = min(1.0, leans_m_s2 / max(math.hypot(lx, ly), 1e-9))
+    jx, jy = lx * back - beside[0] - bx, ly * back - beside[1] - by
+    back = min(1.0, jerk_max_m_s3 * DT_S / max(math.hypot(jx, jy), 1e-9))
+    model[2, 0] += jx * back
+    model[2, 1] += jy * back
     for i in range(2):
         model[0, i] += (model[1, i] + 0.5 * model[2, i] * DT_S) * DT_S
         model[1, i] += model[2, i] * DT_S
@@ -137,6 +138,19 @@ def follow(state: Array, before: Array, acceleration: Array, pushes: Array, dron
 
 
 @compiled_kernel
+def _contact_at(step: int, height_m: float, sink_m_s: float, steps: int) -> int:
+    """Return the step at which a drone touches that goes on to sink."""
+    return min(step + int(max(height_m, 0.0) / max(sink_m_s, _SINKS_M_S) / DT_S), steps - 1)
+
+
+@compiled_kernel
+def _levels(foot_m: float, sink_m_s: float, leans_m_s2: float, drone: Follower) -> bool:
+    """Return whether a drone levels whose lowest foot is so high, and which leans so much beyond steady flight."""
+    takes_s = max(leans_m_s2 - drone.level_m_s2, 0.0) / drone.jerk_max_m_s3
+    return foot_m < drone.level_below_m + max(sink_m_s, 0.0) * takes_s
+
+
+@compiled_kernel
 def _touch(off: Array, lean: Array, sink_m_s: float, air: Array, out: Array) -> None:
     """Write into `out` (6,) a contact: `off` (2, 2) its pad, with that thrust by mass beside the deck's upright."""
     trim = math.atan(math.hypot(air[0], air[1]) / GRAVITY_M_S2)
@@ -157,7 +171,8 @@ def _fly(path: Array, samples: Samples, sample: int, descent: Descent, out: Arra
     model, state = course.model.copy(), samples.deviation[sample].copy()
     known, off, expected, lean = np.zeros((3, 2)), np.empty((2, 2)), np.empty(2), np.empty(2)
     before_m_s2, held, waited = np.empty(2), course.air_enu_m_s2 + state[3], 0
-    holds, trims_m_s2 = np.empty(2), math.hypot(course.air_enu_m_s2[0], course.air_enu_m_s2[1])
+    holds, beside = np.empty(2), np.empty(2)
+    trims_m_s2 = math.hypot(course.air_enu_m_s2[0], course.air_enu_m_s2[1])
     # By another sample's numbers than those of its gusts, and so independent of them.
     error, others = path[0, :2].copy(), samples.pushes[sample - 1]
     left = math.exp(-drone.relearns_hz * DT_S)
@@ -188,13 +203,13 @@ def _fly(path: Array, samples: Samples, sample: int, descent: Descent, out: Arra
             lean += GRAVITY_M_S2 * (course.slope[k] + samples.deck[sample, 0])
             _touch(off, lean, sink_m_s + samples.vertical[sample, 1], course.air_enu_m_s2, out)
             return
-        turns_m_s2 = max(math.hypot(expected[0], expected[1]), drone.level_m_s2)
-        more_m_s2 = max(math.hypot(expected[0] + model[2, 0], expected[1] + model[2, 1]) - turns_m_s2, 0.0)
-        levels = height_m < drone.level_below_m + max(sink_m_s, 0.0) * more_m_s2 / drone.jerk_max_m_s3
-        leans_m_s2 = drone.level_m_s2 if levels else GRAVITY_M_S2
+        beside[:] = holds + GRAVITY_M_S2 * course.slope[_contact_at(k, height_m, sink_m_s, steps)]
+        more = expected + model[2] + beside - course.air_enu_m_s2
+        levels = _levels(height_m - lowest_m, sink_m_s, math.hypot(more[0], more[1]), drone)
+        most_m_s2 = trims_m_s2 + (drone.level_m_s2 if levels else GRAVITY_M_S2)
         before_m_s2[:] = model[2]
-        bounds = (drone.jerk_max_m_s3, drone.acceleration_max_m_s2, trims_m_s2 + leans_m_s2)
-        plan(model, steer(model, state, off, known, drone), expected, holds, bounds)
+        bounds = (drone.jerk_max_m_s3, drone.acceleration_max_m_s2, most_m_s2)
+        plan(model, steer(model, state, off, known, drone), expected, beside if levels else holds, bounds)
         follow(state, before_m_s2, model[2], samples.pushes[sample, k], drone)
 
 

@@ -16,7 +16,7 @@ from companion.landing.steering.following_height import waiting_rise_m
 from companion.landing.steering.sway import update_sway
 from companion.landing.steering.targets import Aim, hover_aim, is_at_rest, pad_aim, stopping_point
 from companion.landing.steering.virtual_model import Tracking, add_to_past, predict_deviation
-from companion.landing.touchdown.levelling import limit_tilt, limits_now
+from companion.landing.touchdown.levelling import levelled, levelling_now, limit_tilt
 from companion.planning.guidance import PlanRequest, PlanResult, ReferenceState, Target
 from companion.situation.phases import FLYING_PHASES, LANDING_PHASES, STATION_PHASES, Phase
 from companion.situation.situation import Drone, Situation
@@ -101,6 +101,8 @@ def fly(
     request = replace(request, limits=limit_tilt(request, model.tracking.holds_enu_m_s2))
     guidance, plan = system.guidance.plan(model.guidance, request)
     flown = flown_plan(plan, period_s, float(aim.floor_enu_m[0]), inputs.shaping, limits)
+    levelling = levelling_now(memory, situation, inputs, system.config)
+    flown = flown if levelling is None else levelled(flown, levelling)
     plan = replace(plan, next_state=state_at(flown, period_s))
     model = replace(
         model,
@@ -116,10 +118,9 @@ def fly(
 
 def _plan_limits(memory: StepMemory, situation: Situation, inputs: StepInputs, config: CompanionConfig) -> FlightLimits:
     """Return the limits of this step's plan, all but that of the tilt."""
-    limits = limits_now(memory, situation, inputs, config)
     if memory.progress.phase in (Phase.RETURN, Phase.RALLY):  # high, above all that being carried on could meet
-        return limits
-    return limit_rates(limits, memory, situation, inputs.shaping, config)
+        return inputs.limits
+    return limit_rates(inputs.limits, memory, situation, inputs.shaping, config)
 
 
 def _since_plan_s(model: ModelMemory, monotonic_ns: int, period_s: float) -> float:

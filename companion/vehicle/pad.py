@@ -143,6 +143,16 @@ def pad_path(
     )
 
 
+def slope_at(pad: PadPath, offset_s: float) -> Array:
+    """Return the slope (2,) of the deck in W, by the road's grade now and by its swing then, height per length."""
+    slope = np.zeros(2)
+    if pad.yaw_rad is not None:
+        slope += pad.grade * np.array([math.cos(pad.yaw_rad), math.sin(pad.yaw_rad)])
+    if pad.swing is not None:
+        slope += [np.interp(offset_s, pad.offset_s, column) for column in pad.swing.slope.T]
+    return slope
+
+
 def _frame_offset(forecast: Forecast, *, is_confirmed: bool) -> FrameOffset:
     offset = forecast.frame_offset_enu_m
     distance_m = None if offset is None else math.hypot(*offset.tolist())

@@ -10,8 +10,7 @@ import math
 import numpy as np
 from msgspec import Struct
 
-from companion.autopilots.limits import RATE_LAG_S
-from companion.autopilots.response import Cascade, Shaping
+from companion.autopilots.response import RATE_LAG_S, Cascade, Shaping
 from companion.core.data import Array, FlightLimits
 from companion.planning.guidance import PlanResult, ReferenceState, Trajectory
 from link.records import replace

@@ -1,23 +1,26 @@
 """Levels a drone that leans into a curve or against a gust before it touches the pad; pure.
 
 In a curve the drone leans as the deck does not: 18 degrees on a circle of 20 m at 8 m/s. So in its last moments it
-turns less than the pad does, and takes the speed against it that it gains so. What counts is the lean beyond that of
-steady flight: one that leans against a fast vehicle's wind comes upright as it brakes, and brakes with all that it can.
+turns less than the pad does, and takes the speed against it that it gains so. What counts is the lean beside the deck's
+upright, beyond that of steady flight: one that leans against a fast vehicle's wind comes upright as it brakes, and
+brakes with all that it can; one over a deck that tilts away from it leans less.
 """
 
 import math
 
 import numpy as np
+from msgspec import Struct
 
 from companion.config.companion import CompanionConfig
-from companion.core.data import Array, FlightLimits
+from companion.core.data import GRAVITY_M_S2, Array, FlightLimits
 from companion.landing.state.memory import StepMemory
 from companion.landing.state.step_data import StepInputs
+from companion.landing.steering.flown_plan import FlownPlan
 from companion.planning.guidance import PlanRequest
 from companion.situation.own_drone import lowest_foot
 from companion.situation.phases import Phase
 from companion.situation.situation import Approach, Situation
-from companion.vehicle.pad import PadPath
+from companion.vehicle.pad import PadPath, slope_at
 from companion.vehicle.pad_reach import over_pad_radius_m
 from link.records import replace
 
@@ -25,30 +28,49 @@ _LEFT_MIN_SHARE = 0.2  # of the tilt limit: with less no plan brakes, and a stea
 _SEEN_OFF_MAX_M = 1.0  # what a range finder sees farther off is not the pad: a roof is 1.5 m above the road
 
 
-def limits_now(memory: StepMemory, situation: Situation, inputs: StepInputs, config: CompanionConfig) -> FlightLimits:
-    """Return the limits of this step: just above the pad the drone turns less than the deck, to touch down level.
+class Levelling(Struct, frozen=True, kw_only=True, eq=False):
+    """How a drone leans that levels, as horizontal thrust by mass.
+
+    Attributes:
+        leans_max_m_s2: beside the deck's upright.
+        beside_enu_m_s2: (2,) that it leans beside the deck's upright while its path accelerates by nothing.
+        jerk_max_m_s3: how fast that changes.
+    """
+
+    leans_max_m_s2: float
+    beside_enu_m_s2: Array
+    jerk_max_m_s3: float
+
+
+def levelling_now(
+    memory: StepMemory, situation: Situation, inputs: StepInputs, config: CompanionConfig
+) -> Levelling | None:
+    """Return how the drone levels, None of one that does not: just above the pad it turns less than the deck.
 
     A drone that leans touches with its lowest foot, so it begins that much higher. It begins earlier by the time that
     it takes to come upright at the largest jerk, by which its lean lags, and by which nearly every setpoint is late at
     most. One that breaks off climbs before it leans.
     """
-    limits, relative, drone = inputs.limits, situation.approach, situation.drone
-    if memory.progress.phase not in (Phase.DESCEND, Phase.ABORT) or relative is None or drone is None:
-        return limits
+    pad, relative, limits = situation.pad, situation.approach, inputs.limits
+    is_low = memory.progress.phase in (Phase.DESCEND, Phase.ABORT)
+    if not is_low or pad is None or relative is None or situation.drone is None:
+        return None
     escape_m = 0.0 if memory.progress.phase is Phase.DESCEND else config.descent.commit_height_m
     asked = np.zeros(2) if memory.model.reference is None else memory.model.reference.acceleration_enu_m_s2[:2]
     tracking = memory.model.tracking
-    leans = asked + tracking.holds_enu_m_s2 - tracking.air_enu_m_s2
-    kept_m_s2, below_m = level_end(situation.pad, relative, inputs, config, leans_m_s2=math.hypot(*leans.tolist()))
-    if lowest_foot_m(situation, relative, config) > below_m + escape_m:
-        return limits
-    most_m_s2 = math.hypot(*tracking.air_enu_m_s2.tolist()) + kept_m_s2
-    return replace(limits, tilt_acceleration_m_s2=min(most_m_s2, limits.tilt_acceleration_m_s2))
+    to_contact_s = max(relative.height_m, 0.0) / max(-relative.climb_m_s, config.descent.sink.contact_rate_m_s)
+    beside = tracking.holds_enu_m_s2 + GRAVITY_M_S2 * slope_at(pad, to_contact_s)
+    kept_m_s2, below_m = level_end(pad, relative, inputs, config)
+    air = tracking.air_enu_m_s2
+    takes_s = max(math.hypot(*(asked + beside - air).tolist()) - kept_m_s2, 0.0) / limits.jerk_max_m_s3
+    early_m = max(-relative.climb_m_s, 0.0) * takes_s
+    if lowest_foot_m(situation, relative, config) > below_m + early_m + escape_m:
+        return None
+    most_m_s2 = min(math.hypot(*air.tolist()) + kept_m_s2, limits.tilt_acceleration_m_s2)
+    return Levelling(leans_max_m_s2=most_m_s2, beside_enu_m_s2=beside, jerk_max_m_s3=limits.jerk_max_m_s3)
 
 
-def level_end(
-    pad: PadPath | None, relative: Approach, inputs: StepInputs, config: CompanionConfig, *, leans_m_s2: float = 0.0
-) -> tuple[float, float]:
+def level_end(pad: PadPath, relative: Approach, inputs: StepInputs, config: CompanionConfig) -> tuple[float, float]:
     """Return how much a drone that levels leans beyond steady flight, m/s^2, and the lowest foot's height to begin.
 
     Args:
@@ -56,15 +78,39 @@ def level_end(
         relative: to it.
         inputs: of the step.
         config: the companion's.
-        leans_m_s2: by how much it leans beyond steady flight before, if by more than the pad turns.
     """
     limits, touchdown = inputs.limits, config.touchdown
-    turns_m_s2 = 0.0 if pad is None else math.hypot(*pad.acceleration_enu_m_s2[0, :2].tolist())
+    turns_m_s2 = math.hypot(*pad.acceleration_enu_m_s2[0, :2].tolist())
     kept_m_s2 = min(_kept_m_s2(turns_m_s2, limits.jerk_max_m_s3, config), limits.acceleration_max_m_s2)
-    takes_s = max(turns_m_s2 - kept_m_s2, leans_m_s2 - kept_m_s2, 0.0) / limits.jerk_max_m_s3
-    takes_s += 0.0 if inputs.response is None else inputs.response.cascade.lean_lag_s
-    early_m = max(-relative.climb_m_s, 0.0) * (takes_s + touchdown.level.late_stds * inputs.link_delay.std_s)
+    lag_s = 0.0 if inputs.response is None else inputs.response.cascade.lean_lag_s
+    early_m = max(-relative.climb_m_s, 0.0) * (lag_s + touchdown.level.late_stds * inputs.link_delay.std_s)
     return kept_m_s2, touchdown.level.height_m + early_m
+
+
+def levelled(flown: FlownPlan, levelling: Levelling) -> FlownPlan:
+    """Return a plan whose drone leans by no more than it may, once its lean has changed to that."""
+    path, beside = flown.trajectory, levelling.beside_enu_m_s2
+    position, velocity = path.position_enu_m.copy(), path.velocity_enu_m_s.copy()
+    acceleration = path.acceleration_enu_m_s2.copy()
+    for node, dt_s in enumerate(np.diff(path.offset_s).tolist(), start=1):
+        before, leans = acceleration[node - 1, :2], acceleration[node, :2] + beside
+        change = _shortened(leans, levelling.leans_max_m_s2) - beside - before
+        now = before + _shortened(change, levelling.jerk_max_m_s3 * dt_s)
+        since_m_s = velocity[node - 1, :2] * dt_s
+        position[node, :2] = position[node - 1, :2] + since_m_s + (before / 3.0 + now / 6.0) * dt_s**2
+        velocity[node, :2] = velocity[node - 1, :2] + 0.5 * (before + now) * dt_s
+        acceleration[node, :2] = now
+    return replace(
+        flown,
+        trajectory=replace(
+            path, position_enu_m=position, velocity_enu_m_s=velocity, acceleration_enu_m_s2=acceleration
+        ),
+    )
+
+
+def _shortened(vector: Array, most: float) -> Array:
+    size = math.hypot(*vector.tolist())
+    return vector if size <= most else vector * (most / size)
 
 
 def limit_tilt(request: PlanRequest, holds_enu_m_s2: Array) -> FlightLimits:

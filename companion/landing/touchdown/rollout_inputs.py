@@ -157,8 +157,8 @@ def follower_of(
         relearns_hz: how fast the error of the vehicle's velocity becomes another one.
         error_std_m_s: its deviation along an axis.
     """
-    if inputs.response is None or situation.approach is None:
-        raise ValueError("no autopilot flies")
+    if inputs.response is None or situation.approach is None or situation.pad is None:
+        raise ValueError("no autopilot flies to a pad")
     cascade, limits = inputs.response.cascade, inputs.limits
     level_m_s2, level_below_m = level_end(situation.pad, situation.approach, inputs, config)
     return Follower(

@@ -9,15 +9,17 @@ from hypothesis import strategies as st
 
 from companion.autopilots.response import Cascade, ResponseModel
 from companion.config.companion import CompanionConfig
-from companion.core.data import Array, FlightLimits, OwnState
+from companion.core.data import GRAVITY_M_S2, Array, FlightLimits, OwnState
 from companion.landing.state.memory import StepMemory
 from companion.landing.state.step_data import LinkDelay, StepInputs
-from companion.landing.touchdown.levelling import limit_tilt, limits_now
-from companion.planning.guidance import PlanRequest, ReferenceState, Target
+from companion.landing.steering.flown_plan import FlownPlan, state_in_plan
+from companion.landing.touchdown.levelling import Levelling, levelled, levelling_now, limit_tilt
+from companion.planning.guidance import PlanRequest, ReferenceState, Target, Trajectory
 from companion.situation.own_drone import drone_now
 from companion.situation.phases import Phase
 from companion.situation.situation import Situation
 from companion.vehicle.pad import PadPath
+from companion.vehicle.shake import PadSwing
 from link.records import replace
 from tests.companion.facts import NOW_NS, changed, drone_at, pad_at, situation
 
@@ -32,7 +34,11 @@ def leans_max(height_m: float, lean: float, memory: StepMemory = DESCENDS) -> fl
     here = situation(height_m)
     assert here.drone is not None
     leaning = replace(here, drone=replace(here.drone, lean=lean))
-    return limits_now(memory, leaning, INPUTS, CONFIG).tilt_acceleration_m_s2
+    return _leans_max_m_s2(levelling_now(memory, leaning, INPUTS, CONFIG))
+
+
+def _leans_max_m_s2(levelling: Levelling | None) -> float:
+    return LIMITS.tilt_acceleration_m_s2 if levelling is None else levelling.leans_max_m_s2
 
 
 @pytest.mark.parametrize(
@@ -74,7 +80,8 @@ def test_a_drone_that_turns_slower_is_levelled_earlier(jerk_m_s3: float, *, leve
     height_m, pad = CONFIG.touchdown.level.height_m + 0.1, _turning(2.5)
     facts = replace(situation(height_m, pad=pad), drone=drone_at(height_m, 0.0, (0.0, 0.0, -0.4), pad=pad))
     limits = replace(LIMITS, jerk_max_m_s3=jerk_m_s3)
-    assert (_levelled_m_s2(facts, limits) < LIMITS.tilt_acceleration_m_s2) is levels
+    turns = _holding(pad.acceleration_enu_m_s2[0, :2])
+    assert (_levelled_m_s2(facts, limits, turns) < LIMITS.tilt_acceleration_m_s2) is levels
 
 
 def _turning(turns_m_s2: float) -> PadPath:
@@ -83,8 +90,14 @@ def _turning(turns_m_s2: float) -> PadPath:
     return replace(pad, acceleration_enu_m_s2=turn)
 
 
-def _levelled_m_s2(facts: Situation, limits: FlightLimits = LIMITS) -> float:
-    return limits_now(DESCENDS, facts, replace(INPUTS, limits=limits), CONFIG).tilt_acceleration_m_s2
+def _levelled_m_s2(facts: Situation, limits: FlightLimits = LIMITS, memory: StepMemory = DESCENDS) -> float:
+    return _leans_max_m_s2(levelling_now(memory, facts, replace(INPUTS, limits=limits), CONFIG))
+
+
+def _holding(holds_enu_m_s2: Array, air_enu_m_s2: Array | None = None) -> StepMemory:
+    air = np.zeros(2) if air_enu_m_s2 is None else air_enu_m_s2
+    tracking = replace(DESCENDS.model.tracking, holds_enu_m_s2=holds_enu_m_s2, air_enu_m_s2=air)
+    return replace(DESCENDS, model=replace(DESCENDS.model, tracking=tracking))
 
 
 def _sinking(height_m: float, sink_m_s: float) -> Situation:
@@ -98,20 +111,18 @@ def test_a_drone_is_levelled_earlier_by_what_its_setpoints_may_be_late(
 ) -> None:
     facts = _sinking(CONFIG.touchdown.level.height_m + 0.025, sink_m_s)  # 0.4 m/s for 0.08 s are 32 mm
     inputs = replace(INPUTS, link_delay=LinkDelay(std_s=late_s / CONFIG.touchdown.level.late_stds))
-    limit_m_s2 = limits_now(DESCENDS, facts, inputs, CONFIG).tilt_acceleration_m_s2
+    limit_m_s2 = _leans_max_m_s2(levelling_now(DESCENDS, facts, inputs, CONFIG))
     assert limit_m_s2 == (LEVEL_M_S2 if levels else LIMITS.tilt_acceleration_m_s2)
 
 
-@pytest.mark.parametrize(
-    ("lag_s", "is_led", "levels"), [(0.05, False, False), (0.25, False, True), (0.25, True, False)]
-)
+@pytest.mark.parametrize(("lag_s", "is_led", "levels"), [(0.1, False, False), (0.25, False, True), (0.25, True, False)])
 def test_a_drone_whose_lean_lags_is_levelled_earlier_by_that(lag_s: float, *, is_led: bool, levels: bool) -> None:
     facts = _sinking(CONFIG.touchdown.level.height_m + 0.05, 0.4)
     cascade = Cascade(
         position_per_s=1.0, velocity_per_s=2.0, integral_per_s2=1.0, lead_s=0.0, attitude_lag_s=lag_s, is_led=is_led
     )
     inputs = replace(INPUTS, response=ResponseModel(cascade, np.array([0.0, 0.1])))
-    assert (limits_now(DESCENDS, facts, inputs, CONFIG).tilt_acceleration_m_s2 == LEVEL_M_S2) is levels
+    assert (levelling_now(DESCENDS, facts, inputs, CONFIG) is not None) is levels
 
 
 @pytest.mark.parametrize(
@@ -129,33 +140,74 @@ def test_the_height_to_be_levelled_at_is_what_a_range_finder_has_just_seen_of_th
     estimated_m: float, seen_m: float | None, beside_m: float, *, levels: bool
 ) -> None:
     facts = changed(situation(estimated_m, beside_m), range_height_m=seen_m, range_carried_m=seen_m)
-    limit_m_s2 = limits_now(DESCENDS, facts, INPUTS, CONFIG).tilt_acceleration_m_s2
+    limit_m_s2 = _leans_max_m_s2(levelling_now(DESCENDS, facts, INPUTS, CONFIG))
     assert limit_m_s2 == (LEVEL_M_S2 if levels else LIMITS.tilt_acceleration_m_s2)
-
-
-@pytest.mark.parametrize(
-    ("needed_rad", "left_m_s2"),
-    [(math.pi, LIMITS.acceleration_max_m_s2), (0.0, 0.2 * 3.6), (0.5 * math.pi, math.sqrt(0.6**2 + 2.0 * 0.6 * 3.0))],
-    ids=["brakes", "goes faster", "turns"],
-)
-def test_a_drone_that_leans_against_the_wind_of_its_way_is_levelled_to_that_lean(
-    needed_rad: float, left_m_s2: float
-) -> None:
-    air = np.array([3.0, 0.0])
-    tracking = replace(DESCENDS.model.tracking, air_enu_m_s2=air)
-    flies = replace(DESCENDS, model=replace(DESCENDS.model, tracking=tracking))
-    limits = limits_now(flies, situation(0.05), INPUTS, CONFIG)
-    assert _left_m_s2(_turned(3.0, needed_rad), air, limits) == pytest.approx(left_m_s2)
 
 
 @pytest.mark.parametrize(("leans_m_s2", "levels"), [(2.0, False), (5.0, True)])
 def test_a_drone_that_leans_more_than_the_pad_turns_is_levelled_earlier(leans_m_s2: float, *, levels: bool) -> None:
-    tracking = replace(DESCENDS.model.tracking, holds_enu_m_s2=np.array([0.0, leans_m_s2]))
-    flies = replace(DESCENDS, model=replace(DESCENDS.model, tracking=tracking))
     facts = _sinking(CONFIG.touchdown.level.height_m + 0.05, 0.4)
     limits = replace(LIMITS, jerk_max_m_s3=20.0)
-    limit_m_s2 = limits_now(flies, facts, replace(INPUTS, limits=limits), CONFIG).tilt_acceleration_m_s2
+    limit_m_s2 = _levelled_m_s2(facts, limits, _holding(np.array([0.0, leans_m_s2])))
     assert limit_m_s2 == (LEVEL_M_S2 if levels else LIMITS.tilt_acceleration_m_s2)
+
+
+@pytest.mark.parametrize(("slope", "levels"), [(0.0, False), (0.5, True)])
+def test_a_drone_over_a_deck_that_tilts_away_from_it_is_levelled_earlier(slope: float, *, levels: bool) -> None:
+    facts = _sinking(CONFIG.touchdown.level.height_m + 0.05, 0.4)
+    pad = facts.pad
+    assert pad is not None
+    north = PadSwing(
+        slope=np.tile([0.0, slope], (len(pad.offset_s), 1)),
+        shake_enu=np.zeros((3, len(pad.offset_s), 2)),
+        climb_std_m_s=np.zeros(len(pad.offset_s)),
+        tilt_std_rad=np.zeros((len(pad.offset_s), 4)),
+        above_m=1.5,
+        heave_rad_s=6.0,
+    )
+    limits = replace(LIMITS, jerk_max_m_s3=20.0)
+    flies = _holding(np.array([0.0, 2.0]), np.array([0.0, 2.0]))
+    levelling = levelling_now(
+        flies, replace(facts, pad=replace(pad, swing=north)), replace(INPUTS, limits=limits), CONFIG
+    )
+    assert (levelling is not None) is levels
+    if levelling is not None:
+        assert levelling.beside_enu_m_s2.tolist() == pytest.approx([0.0, 2.0 + slope * GRAVITY_M_S2])
+
+
+def test_a_drone_that_leans_against_the_wind_of_its_way_may_lean_to_either_side_as_much() -> None:
+    levelling = levelling_now(_holding(np.array([3.0, 0.0]), np.array([3.0, 0.0])), situation(0.05), INPUTS, CONFIG)
+    assert levelling is not None
+    assert levelling.leans_max_m_s2 == pytest.approx(3.0 + LEVEL_M_S2)
+
+
+directions = st.tuples(st.floats(-9.0, 9.0), st.floats(-9.0, 9.0)).map(np.array)
+
+
+@given(asked=directions, beside=directions, most_m_s2=st.floats(0.5, 6.0))
+def test_a_levelled_plan_leans_by_no_more_than_it_may_once_its_lean_has_changed(
+    asked: Array, beside: Array, most_m_s2: float
+) -> None:
+    jerk_m_s3, offset_s = 20.0, np.array([0.0, 0.02, 0.05, 0.1, 0.2, 2.0])
+    still = np.zeros((len(offset_s), 3))
+    path = Trajectory(
+        offset_s=offset_s,
+        position_enu_m=still,
+        velocity_enu_m_s=still,
+        acceleration_enu_m_s2=still + np.array([*asked, 1.0]),
+    )
+    flown = FlownPlan(trajectory=path, lowest_enu_m=0.0, shaping=None, limits=LIMITS)
+    plan = levelled(flown, Levelling(leans_max_m_s2=most_m_s2, beside_enu_m_s2=beside, jerk_max_m_s3=jerk_m_s3))
+    acceleration = plan.trajectory.acceleration_enu_m_s2
+    leans = np.linalg.norm(acceleration[:, :2] + beside, axis=1)
+    changes = np.linalg.norm(np.diff(acceleration[:, :2], axis=0), axis=1)
+    assert (changes <= jerk_m_s3 * np.diff(offset_s) + 1e-9).all()
+    assert leans[-1] <= most_m_s2 + 1e-9
+    assert (leans <= max(leans[0], most_m_s2) + 1e-9).all()
+    assert (acceleration[:, 2] == 1.0).all()
+    within = state_in_plan(plan.trajectory, 0.05 - 1e-9)
+    assert within.velocity_enu_m_s[:2] == pytest.approx(plan.trajectory.velocity_enu_m_s[2, :2], abs=1e-6)
+    assert within.position_enu_m[:2] == pytest.approx(plan.trajectory.position_enu_m[2, :2], abs=1e-6)
 
 
 def test_nothing_but_a_descent_and_its_abort_is_levelled() -> None:
