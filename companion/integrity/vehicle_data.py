@@ -143,7 +143,7 @@ def update_course(
     off_max_rad = _off_max_rad(pad, speed_m_s, config)
     if compared_s < _COURSE_OVER_S or off_max_rad is None:
         return watch
-    return _judge(watch, off_max_rad + unsure_rad, slip_rad)
+    return _judge(watch, off_max_rad, unsure_rad, slip_rad)
 
 
 def course_off_max_rad(speed_m_s: float, config: IntegrityConfig, *, is_afloat: bool) -> float | None:
@@ -167,12 +167,16 @@ def _off_max_rad(pad: PadPath, speed_m_s: float, config: CompanionConfig) -> flo
     return min(most_rad, cone_radius_at_pad_m(pad.half_width_m, config) / mounting.arm_m)
 
 
-def _judge(watch: CourseWatch, off_max_rad: float, slip_rad: float) -> CourseWatch:
-    """Return the watch after a comparison: a bend's slip excuses a heading that has agreed, and proves none."""
+def _judge(watch: CourseWatch, off_max_rad: float, unsure_rad: float, slip_rad: float) -> CourseWatch:
+    """Return the watch after a comparison: doubts and a bend's slip excuse a heading that has agreed, and prove none.
+
+    One that was contradicted is believed again where neither can hide that it is off.
+    """
     off_rad = abs(math.atan2(watch.off_sin, watch.off_cos))
-    within_rad = off_max_rad if watch.off_rad is None else _BACK_WITHIN * off_max_rad
-    if watch.has_agreed and watch.off_rad is None:
-        within_rad += slip_rad
+    if watch.off_rad is None:
+        within_rad = off_max_rad + unsure_rad + (slip_rad if watch.has_agreed else 0.0)
+    else:
+        within_rad = _BACK_WITHIN * off_max_rad - slip_rad
     if off_rad <= within_rad:
         is_known = watch.has_agreed and not watch.has_stopped and watch.off_rad is None
         return watch if is_known else replace(watch, has_agreed=True, has_stopped=False, off_rad=None)
