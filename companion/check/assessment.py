@@ -173,7 +173,7 @@ def assess_vehicle(seen: VehicleFacts, config: CompanionConfig, *, is_expected: 
         advice = f"see what the vehicle publishes on {seen.key}, and whether its receiver has a fix"
         return [make_finding("vehicle", f"refused: {seen.fix_refused_why}", Level.FAIL, advice)]
     if seen.rate_hz <= 0.0:
-        advice = "start the ground vehicle, or check --ns, --vehicle and -e"
+        advice = "start the ground vehicle, or check --ns, --vehicle, -e and the names in the rules of vehicle.json5"
         level = Level.FAIL if is_expected else Level.WARN
         return [make_finding("vehicle", f"nothing on {seen.key}", level, advice)]
     least_hz = _FIX_RATE_MIN_HZ if seen.has_velocity else _FIX_RATE_ALONE_MIN_HZ

@@ -33,9 +33,9 @@ _FAILED = 1
 _SpeedMaxOption = Annotated[
     float, typer.Option("--speed-max", metavar="M_S", min=0.0, max=50.0, help="Of the vehicle to be landed on.")
 ]
-_LaunchOption = Annotated[bool, typer.Option("--launch", help="And for a launch from the vehicle while it drives.")]
-_DurationOption = Annotated[float, typer.Option("--duration", min=1.0, help="Seconds that rates are counted for.")]
-_TimeoutOption = Annotated[float, typer.Option("--timeout", min=0.0, help="Seconds without an autopilot.")]
+_LaunchOption = Annotated[bool, typer.Option("--launch", help="Check for a launch from a driving vehicle, too.")]
+_DurationOption = Annotated[float, typer.Option("--duration", min=1.0, help="Seconds for which rates are counted.")]
+_TimeoutOption = Annotated[float, typer.Option("--timeout", min=0.0, help="Seconds to look for an autopilot.")]
 _WriteOption = Annotated[bool, typer.Option("--write", help="Write the advised parameters, after asking.")]
 _YesOption = Annotated[bool, typer.Option("--yes", help="Write without asking.")]
 _KeepOption = Annotated[

@@ -64,7 +64,9 @@ def calibrate_command(
     board: BoardOption = None,
     out: Annotated[Path, typer.Option("--out", metavar="FILE", help="Write it here.")] = Path("camera.yaml"),
     fisheye: Annotated[bool, typer.Option("--fisheye", help="For lenses of more than 120 degrees.")] = False,
-    pictures: Annotated[int, typer.Option("--pictures", min=8, max=500, help="That show the board elsewhere.")] = 40,
+    pictures: Annotated[
+        int, typer.Option("--pictures", min=8, max=500, help="To collect, each with the board elsewhere.")
+    ] = 40,
     size: SizeOption = None,
     as_json: JsonOption = False,
     namespace: NamespaceOption = "decklander",
@@ -142,7 +144,9 @@ def latency_command(
     board: BoardOption = None,
     mounting: MountingOption = None,
     size: SizeOption = None,
-    seconds: Annotated[float, typer.Option("--duration", min=3.0, max=600.0, help="For which it is turned.")] = 15.0,
+    seconds: Annotated[
+        float, typer.Option("--duration", min=3.0, max=600.0, help="Seconds for which it is turned.")
+    ] = 15.0,
     as_json: JsonOption = False,
     namespace: NamespaceOption = "decklander",
     drone: DroneOption = "drone",

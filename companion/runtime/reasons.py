@@ -2,6 +2,7 @@
 
 import difflib
 import json
+import re
 import sys
 import textwrap
 from typing import Annotated
@@ -14,6 +15,7 @@ from link.errors import UserError
 from link.program.cli import JsonOption
 
 _WIDTH = 78
+_PLACE = re.compile(r"\{[^}]*\}")
 
 _NamesArgument = Annotated[
     list[str] | None, typer.Argument(metavar="[NAME]...", help="Such as OFFSET_UNKNOWN; all of them if none is given.")
@@ -39,7 +41,7 @@ def reasons(
         return
     for name in wanted:
         one = helps[name]
-        sys.stdout.write(f"{name}: {one.reason.value}\n")
+        sys.stdout.write(f"{name}: {_PLACE.sub('...', one.reason.value)}\n")
         for text in (f"({one.group}) {one.meaning}", one.remedy):
             sys.stdout.write(textwrap.indent(textwrap.fill(text, _WIDTH), "  ") + ("\n" if text else ""))
 

@@ -36,9 +36,9 @@ def attack_command(
     names: NameArguments,
     endpoints: ZenohArguments,
 ) -> int:
-    """Try what attackers try, on a companion on the bench where one is given; exit code 1 when one of it works.
+    """Try what attackers try, on a companion on the bench if one is given; exit code 1 when an attempt works.
 
-    Without --mavlink, --stranger, -e and --zenoh-config what needs no companion is tried.
+    Without --mavlink, --stranger, -e and --zenoh-config it tries only what needs no companion.
     """
     is_live = bool(mavlink or stranger or endpoints.connect or endpoints.zenoh_config)
     tried = _live(mavlink, stranger, names, endpoints) if is_live else _inside()

@@ -20,8 +20,10 @@ def register(app: typer.Typer) -> None:
 
 def eyes_command(
     *,
-    frames: Annotated[int, typer.Option("--frames", min=1, help="With the board.")] = 500,
-    bare: Annotated[int, typer.Option("--bare", min=0, help="Without it, half of them with another board.")] = 250,
+    frames: Annotated[int, typer.Option("--frames", min=1, help="Frames with the board.")] = 500,
+    bare: Annotated[
+        int, typer.Option("--bare", min=0, help="Frames without it, half of them with another board.")
+    ] = 250,
     seed: Annotated[int, typer.Option("--seed", min=0, help="Of everything drawn.")] = 1,
     pictures: Annotated[
         Path | None, typer.Option("--examples", metavar="DIR", help="Only draw what it sees from 8, 2 and 0.2 m there.")

@@ -25,14 +25,15 @@ def register(app: typer.Typer) -> None:
 def falsify_command(
     slice_name: Annotated[str, typer.Argument(metavar="SLICE", help="Of the domain, such as world or world:urban.")],
     *,
-    landings: Annotated[int, typer.Option("--landings", min=1, metavar="N", help="Of the search.")] = 500,
+    landings: Annotated[int, typer.Option("--landings", min=1, metavar="N", help="Landings of the search.")] = 500,
     reduction: Annotated[
         int, typer.Option("--reduction", min=0, metavar="N", help="Landings to reduce what is found.")
     ] = 200,
     seed: Annotated[int, typer.Option("--seed", min=0, help="Of the first start; further ones follow.")] = 1,
     workers: WorkersOption = None,
     only: Annotated[
-        str, typer.Option("--only", metavar="PART,...", help="Of the quantities, such as driver,wind; others: medians.")
+        str,
+        typer.Option("--only", metavar="PART,...", help="Vary these alone, such as driver,wind; the others: medians."),
     ] = "",
     random: Annotated[bool, typer.Option("--random", help="Draw worlds at random, to compare with.")] = False,
     out: Annotated[Path | None, typer.Option("--out", metavar="DIR", help="What is kept [default: in runs].")] = None,

@@ -40,11 +40,11 @@ def faults_command(
     workers: WorkersOption = None,
     firmware: OneFirmwareOption = None,
     fault: Annotated[
-        str | None, typer.Option("--fault", metavar="TEXT", help="Only those with this in their name.")
+        str | None, typer.Option("--fault", metavar="TEXT", help="Only faults with this in their name.")
     ] = None,
-    phase: Annotated[str | None, typer.Option("--phase", metavar="NAME", help="Only in this one.")] = None,
+    phase: Annotated[str | None, typer.Option("--phase", metavar="NAME", help="Only in this phase.")] = None,
     wire: Annotated[
-        bool, typer.Option("--wire", help="With real programs, at the speed of the clock: those that can be.")
+        bool, typer.Option("--wire", help="With real programs, in real time: the faults that allow it.")
     ] = False,
     as_json: JsonOption = False,
 ) -> int:

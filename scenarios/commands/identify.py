@@ -30,17 +30,17 @@ def identify_command(
     *,
     firmware: Annotated[
         str | None,
-        typer.Option("--firmware", metavar="px4|ardupilot", help="Of the stand-in [default: that of the autopilot]."),
+        typer.Option("--firmware", metavar="px4|ardupilot", help="Of sim-autopilot [default: that of the autopilot]."),
     ] = None,
     parameter: Annotated[
-        list[str] | None, typer.Option("--parameter", metavar="NAME=VALUE", help="Of the stand-in; may be repeated.")
+        list[str] | None, typer.Option("--parameter", metavar="NAME=VALUE", help="Of sim-autopilot; may be repeated.")
     ] = None,
     as_json: JsonOption = False,
 ) -> None:
-    """Fly steps, ramps, reversals and a circle with an autopilot, and with the stand-in, and show both side by side.
+    """Fly steps, ramps, reversals and a circle with an autopilot and with sim-autopilot, and show both side by side.
 
     The autopilot takes off, flies for two minutes in real time within 50 m, 8 to 17 m up, and is left hovering: a
-    simulation, or a drone in the open. Without --mavlink the stand-in flies alone, in lockstep.
+    simulation, or a drone in the open. Without --mavlink sim-autopilot flies alone, in lockstep.
     """
     from scenarios.identify.figures import figures
     from scenarios.identify.fit import fit_law
@@ -55,7 +55,7 @@ def identify_command(
         firmware = flight.autopilot
         columns.append((flight.autopilot, figures(flight), fit_law(flight)))
     if firmware is None:
-        raise UserError("nothing to fly: give --mavlink DEVICE, or --firmware px4 or ardupilot for the stand-in alone")
+        raise UserError("nothing to fly: give --mavlink DEVICE, or --firmware px4 or ardupilot for sim-autopilot alone")
     flight = fly_stand_in(firmware, parameters)
     columns.append(("stand-in", figures(flight), fit_law(flight)))
     if as_json:
