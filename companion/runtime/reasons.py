@@ -5,6 +5,7 @@ import json
 import re
 import sys
 import textwrap
+from collections.abc import Mapping, Sequence
 from typing import Annotated
 
 import typer
@@ -16,9 +17,14 @@ from link.program.cli import JsonOption
 
 _WIDTH = 78
 _PLACE = re.compile(r"\{[^}]*\}")
+_NUMBER = re.compile(r"-?\d+(\.\d+)?")
 
 _NamesArgument = Annotated[
-    list[str] | None, typer.Argument(metavar="[NAME]...", help="Such as OFFSET_UNKNOWN; all of them if none is given.")
+    list[str] | None,
+    typer.Argument(
+        metavar="[NAME|WORDS]...",
+        help="Such as OFFSET_UNKNOWN, or the words that the panel or the log shows; all reasons if none is given.",
+    ),
 ]
 
 
@@ -29,12 +35,7 @@ def reasons(
 ) -> None:
     """Explain the reasons that the panel, the log and `landing/status` tell."""
     helps = {one.reason.name: one for one in reason_helps(CompanionConfig())}
-    wanted = [name.upper() for name in names or helps]
-    unknown = [name for name in wanted if name not in helps]
-    if unknown:
-        near = difflib.get_close_matches(unknown[0], helps, cutoff=0.5)
-        told = f"; did you mean {', '.join(near)}?" if near else "; `companion reasons` lists them all"
-        raise UserError(f"no reason is called {unknown[0]}{told}")
+    wanted = _named(names, helps) if names else list(helps)
     if as_json:
         told_of = [{"name": name, "sentence": helps[name].reason.value} | _words(helps[name]) for name in wanted]
         sys.stdout.write(json.dumps({"reasons": told_of}, indent=2) + "\n")
@@ -44,6 +45,32 @@ def reasons(
         sys.stdout.write(f"{name}: {_PLACE.sub('...', one.reason.value)}\n")
         for text in (f"({one.group}) {one.meaning}", one.remedy):
             sys.stdout.write(textwrap.indent(textwrap.fill(text, _WIDTH), "  ") + ("\n" if text else ""))
+
+
+def _named(names: Sequence[str], helps: Mapping[str, ReasonHelp]) -> list[str]:
+    """Return the reasons of these names, or those whose sentence has these words.
+
+    Raises:
+        UserError: there is none.
+    """
+    upper = [name.upper() for name in names]
+    unknown = [name for name in upper if name not in helps]
+    if not unknown:
+        return upper
+    shown = " ".join(names).casefold()
+    found = [name for name, one in helps.items() if _tells(one.reason.value.casefold(), shown)]
+    if found:
+        return found
+    near = difflib.get_close_matches(unknown[0], helps, cutoff=0.5)
+    told = f"did you mean {', '.join(near)}?" if near else "`companion reasons` lists them all"
+    raise UserError(f"no reason has the name or the words {' '.join(names)!r}; {told}")
+
+
+def _tells(sentence: str, shown: str) -> bool:
+    """Return whether a sentence with places for its values has the words, or is among what is shown."""
+    whole = ".+".join(re.escape(part) for part in _PLACE.split(sentence))
+    counted, told = _NUMBER.sub("#", _PLACE.sub("#", sentence)), _NUMBER.sub("#", shown)
+    return told in counted or re.search(whole, shown) is not None
 
 
 def _words(help_: ReasonHelp) -> dict[str, str]:

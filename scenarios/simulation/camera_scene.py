@@ -19,6 +19,7 @@ from companion.eyes.camera import Camera
 from companion.eyes.mounting import Mounting, MountingConfig, mounting_of
 from companion.eyes.picture import Box, Part
 from companion.eyes.sight import Frame, SightMemory, SightSystem, sight_step
+from link.errors import UserError
 from link.frames.rotations import matrix_from_quaternion, quaternion_from_roll_pitch_yaw
 from link.messages import BodyTruth, PadSighting
 from link.program.toml_config import dump_toml
@@ -172,11 +173,19 @@ CALIBRATION, MOUNTED, BOARD = "camera.yaml", "mounting.toml", "board.toml"
 
 
 def write_camera_files(scenario: Scenario, seed: Seed, folder: Path) -> None:
-    """Write calibration, mounting and board, with the errors of the seed, into a folder that exists."""
+    """Write calibration, mounting and board, with the errors of the seed, into a folder.
+
+    Raises:
+        UserError: the folder cannot be written.
+    """
     system = CameraScene(scenario, seed).system
-    (folder / CALIBRATION).write_text(dump_calibration(system.camera), encoding="utf-8")
-    (folder / MOUNTED).write_text(dump_toml(mounting_told(scenario)), encoding="utf-8")
-    (folder / BOARD).write_text(dump_toml(system.board.config), encoding="utf-8")
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / CALIBRATION).write_text(dump_calibration(system.camera), encoding="utf-8")
+        (folder / MOUNTED).write_text(dump_toml(mounting_told(scenario)), encoding="utf-8")
+        (folder / BOARD).write_text(dump_toml(system.board.config), encoding="utf-8")
+    except OSError as error:
+        raise UserError(f"{folder}: cannot be written ({error.strerror}); choose another folder") from None
 
 
 def detector_arguments(folder: Path) -> list[str]:

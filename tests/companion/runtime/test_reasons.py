@@ -1,0 +1,38 @@
+"""Reasons are found by their names, and by the words that the panel and the log show."""
+
+import pytest
+
+from companion.core.reasons import Cause, Reason, sentence
+from companion.runtime.reasons import reasons
+from link.errors import UserError
+
+
+def told(capsys: pytest.CaptureFixture[str], *words: str) -> list[str]:
+    reasons(list(words))
+    lines = capsys.readouterr().out.splitlines()
+    return [line.partition(":")[0] for line in lines if not line.startswith(" ")]
+
+
+@pytest.mark.parametrize(
+    ("words", "name"),
+    [
+        (("offset_unknown",), "OFFSET_UNKNOWN"),
+        (("Too fast against",), "TOO_FAST_NEAR_PAD"),
+        (("too", "fast", "against"), "TOO_FAST_NEAR_PAD"),
+        ((f"2026-11-28 abort {sentence(Cause(Reason.HEADING_OFF_COURSE, (31.0,)))} (HEADING)",), "HEADING_OFF_COURSE"),
+    ],
+    ids=["name", "a part of the sentence", "unquoted", "a whole line of the log"],
+)
+def test_reason_is_found(words: tuple[str, ...], name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert told(capsys, *words) == [name]
+
+
+def test_several_names_are_told_in_their_order(capsys: pytest.CaptureFixture[str]) -> None:
+    assert told(capsys, "CONTACT", "OFFSET_UNKNOWN") == ["CONTACT", "OFFSET_UNKNOWN"]
+
+
+def test_what_no_reason_says_is_refused_with_the_nearest_name() -> None:
+    with pytest.raises(UserError, match="'HARD_CONTAC'; did you mean HARD_CONTACT"):
+        reasons(["HARD_CONTAC"])
+    with pytest.raises(UserError, match="'no such thing'; `companion reasons` lists them all"):
+        reasons(["no", "such", "thing"])
