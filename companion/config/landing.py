@@ -6,11 +6,15 @@ from pydantic import Field, ValidationInfo, field_validator
 
 from link.program.toml_config import NotNegative, Positive, StrictModel
 
+FlownHeight = Annotated[float, Field(gt=0.0, le=120.0)]
+"""Above the ground, or above the pad, m. Without a permit of its own no drone flies higher: regulation (EU) 2019/947,
+UAS.OPEN.010 (120 m), and 14 CFR 107.51 (400 ft, 122 m)."""
+
 
 class TakeoffConfig(StrictModel):
     """The climb to the waiting point and the wait."""
 
-    waiting_height_m: Positive = 5.0  # above where it took off; source report, section "Task"
+    waiting_height_m: FlownHeight = 5.0  # above where it took off; source report, section "Task"
     reached_distance_m: Positive = 0.5
     refused_after_s: Positive = 30.0  # PX4 is armable 2.7 to 4.8 s after its start, ArduCopter 41.5 s
     time_limit_s: Positive = 60.0
@@ -27,11 +31,11 @@ class TakeoffConfig(StrictModel):
 class ChaseConfig(StrictModel):
     """When the chase begins and when it is close enough."""
 
-    height_m: Positive = 3.5  # above the pad, until the drone is over it; 5 m over a road under a roof of 1.5 m
+    height_m: FlownHeight = 3.5  # above the pad, until the drone is over it; 5 m over a road under a roof of 1.5 m
     # And so many standard deviations of the pad's height more while it has to be seen first: with a deviation of 2 m,
     # one roof in 25 is 3.5 m or more higher than it is said to be, and the drone would fly into it.
     unseen_height_stds: NotNegative = 2.0
-    unseen_height_max_m: Positive = 8.0  # in all; less than the range of the detector that is to see it (12 m here)
+    unseen_height_max_m: FlownHeight = 8.0  # in all; less than the range of the detector that is to see it (12 m here)
     # Of the acceleration limit, and of the jerk's, that suffices for a chase that begins in time.
     start_fraction: Annotated[float, Field(gt=0.0, le=1.0)] = 0.7
     # So long a chase looks for a pad that has to be seen, over its said place, before it says what is missing. In this
@@ -67,7 +71,7 @@ class AbortConfig(StrictModel):
     near_speed_max_m_s: Positive = 0.8  # S1 asks for 1.0 at contact
     near_speed_hold_s: NotNegative = 0.06  # for which it must be too fast near the pad: three reports at 50 Hz
     alive_lost_fix_age_max_s: NotNegative = 0.5  # in place of `fix_age_max_s` once the vehicle's token is lost
-    height_m: Positive = 5.0  # above the pad, or above where the abort began without a vehicle
+    height_m: FlownHeight = 5.0  # above the pad, or above where the abort began without a vehicle
     # For so long vehicle and autopilot are heard without a break before the next approach: a retry is soon lost to an
     # outage that goes on, or to another one.
     heard_hold_s: NotNegative = 1.0

@@ -12,6 +12,7 @@ from companion.runtime.computer import ComputerWatch
 from companion.runtime.live_state import Onlooker, onlookers
 from companion.runtime.node import CompanionNode
 from companion.runtime.options import Links, LoopOptions, Timings
+from companion.runtime.outbox import Outbox
 from companion.runtime.recorded_node import RecordingNode
 from companion.runtime.sent_frames import SentFrames
 from companion.runtime.start_and_handover import OwnStart, hand_over
@@ -42,9 +43,11 @@ def run(node: CompanionNode, links: Links, options: LoopOptions) -> Timings:
             tlog = BackgroundRecorder(TlogSink(options.tlog))
             stack.callback(tlog.close)
         lookers = onlookers(stack, links.zenoh, links.keys, options.device)
+        outbox = Outbox(links.zenoh)
+        stack.callback(outbox.close)
         log = Log("companion")
         stack.callback(log.close)
-        return _Loop(node, links, options, tlog=tlog, lookers=lookers, log=log).run()
+        return _Loop(node, links, options, tlog=tlog, lookers=lookers, log=log, outbox=outbox).run()
 
 
 class _Loop:
@@ -57,6 +60,7 @@ class _Loop:
         tlog: Recorder | None,
         lookers: list[Onlooker],
         log: Log,
+        outbox: Outbox,
     ) -> None:
         self._node = node
         self._keys = keys = links.keys
@@ -67,7 +71,7 @@ class _Loop:
         self._options = options
         self._sent = SentFrames(links.transport, node.autopilot.session, tlog)
         self._onlookers = lookers
-        self._log = log
+        self._log, self._outbox = log, outbox
         self._service = Service()
         self._desk = CommandDesk()
         self._timings = Timings()
@@ -177,7 +181,7 @@ class _Loop:
     def _after_step(self) -> None:
         """Publish, reply, log; and see to what is still missing."""
         for publication in self._node.take_publications():
-            self._zenoh.publish(publication.key, publication.payload, publication.encoding)
+            self._outbox.put(publication)
         if self._node.inputs is not None and self._start.commanded(self._node.inputs.command):
             self._log.info("start called off")
         self._desk.answer(self._start.answered(self._node.take_replies()))

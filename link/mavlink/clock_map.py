@@ -16,6 +16,7 @@ from typing import NamedTuple
 
 from msgspec import Struct
 
+from link.mavlink.clock_config import DEFAULT_CLOCK_CONFIG, ClockConfig
 from link.mavlink.clock_line import ClockLine, ClockPair, fit_clock_line
 from link.records import replace
 
@@ -24,36 +25,10 @@ UNIX_TIME_MIN_NS = 1_234_567_890 * 10**9
 # After this (2038-01-18) a stamp of ROS 2 has no room for it.
 UNIX_TIME_MAX_NS = 2_147_400_000 * 10**9
 
-# With fewer pairs the drift is a guess, and a simulation at several times real time would look like endless steps.
-_STEP_PAIRS_MIN = 5
+# With fewer round trips the drift is a guess: a simulation at several times real time would look like endless steps.
+_STEP_TRIPS_MIN = 5
 _STEP_AGREE = 3  # readings in a row that tell of the same step before it is believed: one may be anybody's, or garbled
-
-
-class ClockConfig(Struct, frozen=True, kw_only=True):
-    """How clocks are followed.
-
-    Attributes:
-        window_ns: pairs older than this are forgotten.
-        pairs_max: so many are kept at most.
-        drift_std: of an unknown clock against another; simulations were seen 1 to 2.5 % off.
-        round_trip_std_ns: of the quickest round trip on a steady link; the autopilot's answer waits for its own loop.
-        spread_share: of what the median round trip takes longer than the quickest, added to each one's deviation, as
-            the quickest of a few is not free of jitter either. 0.1 makes the stated deviation match the true error
-            for uniform jitter from 1 to 50 ms.
-        system_time_std_ns: of a SYSTEM_TIME pair, cut to 1 ms: a uniform error of 1 / sqrt(12) ms.
-        step_ns: a disagreement beyond what a pair explains, from which a clock is taken to have been set.
-    """
-
-    window_ns: int = 20_000_000_000
-    pairs_max: int = 64
-    drift_std: float = 0.02
-    round_trip_std_ns: float = 300_000.0
-    spread_share: float = 0.1
-    system_time_std_ns: float = 300_000.0
-    step_ns: int = 50_000_000
-
-
-DEFAULT_CLOCK_CONFIG = ClockConfig()
+_DRIFT_STDS_MAX = 5.0  # of UTC against boot time: one quartz makes both, and no step is farther off than that
 
 
 class RoundTrip(NamedTuple):
@@ -164,7 +139,7 @@ def with_round_trip(clock: ClockMap, trip: RoundTrip, config: ClockConfig = DEFA
         return clock
     line, trips = clock.local_to_boot, clock.round_trips
     news: tuple[RoundTrip, ...] = (trip,)
-    if len(trips) >= _STEP_PAIRS_MIN and _is_step(line, trip.middle_ns, trip.boot_ns, trip.duration_ns / 2, config):
+    if len(trips) >= _STEP_TRIPS_MIN and _is_step(line, trip.middle_ns, trip.boot_ns, trip.duration_ns / 2, config):
         news = (*clock.doubted_trips, trip)[-_STEP_AGREE:]
         if not _agree([ClockPair(one.middle_ns, one.boot_ns, one.duration_ns / 2) for one in news], config):
             return replace(clock, doubted_trips=news)
@@ -191,6 +166,7 @@ def with_system_time(
         clock: what was known.
         boot_ns: its time since boot.
         unix_ns: its UTC; passed over before `UNIX_TIME_MIN_NS` (0 is the usual "unknown") and after `UNIX_TIME_MAX_NS`.
+            One that stands still, or runs backwards or at another rate than boot time, is no UTC: that known goes on.
         config: how clocks are followed.
 
     Returns:
@@ -200,14 +176,17 @@ def with_system_time(
         return clock
     line, pairs = clock.boot_to_utc, clock.system_times
     news: tuple[ClockPair, ...] = (ClockPair(boot_ns, unix_ns, config.system_time_std_ns),)
-    if len(pairs) >= _STEP_PAIRS_MIN and _is_step(line, boot_ns, unix_ns, config.system_time_std_ns, config):
+    if _is_step(line, boot_ns, unix_ns, config.system_time_std_ns, config):
         news = (*clock.doubted_times, *news)[-_STEP_AGREE:]
         if not _agree(news, config):
             return replace(clock, doubted_times=news)
         pairs = ()
     oldest_ns = boot_ns - config.window_ns
     pairs = (*(one for one in pairs if one.x_ns >= oldest_ns), *news)[-config.pairs_max :]
-    return replace(clock, system_times=pairs, doubted_times=(), boot_to_utc=_fit(pairs, line, config))
+    fitted = _fit(pairs, line, config)
+    if abs(fitted.drift) > _DRIFT_STDS_MAX * config.drift_std:
+        return replace(clock, doubted_times=news)
+    return replace(clock, system_times=pairs, doubted_times=(), boot_to_utc=fitted)
 
 
 def _pairs(trips: tuple[RoundTrip, ...], config: ClockConfig) -> list[ClockPair]:

@@ -59,6 +59,7 @@ class SequenceTracker:
 
 _UNKNOWN_IDS_MAX = 64  # counted apart; noise would make up thousands
 _PEERS_MAX = 64  # whose unfinished frames are kept; more than a transport has at a time
+_SENDERS_MAX = 64  # whose sequences are followed; forgers would make up 65,536, and all are summed with each status
 
 
 class MavlinkCodec:
@@ -230,7 +231,7 @@ class MavlinkCodec:
         messages.append(message)
         self._messages_received += 1
         sender = message.get_srcSystem(), message.get_srcComponent()
-        if sender not in self._sequences:
+        if sender not in self._sequences and len(self._sequences) < _SENDERS_MAX:
             self._sequences[sender] = SequenceTracker()
 
     def _count_unknown(self, message_id: int) -> None:

@@ -111,7 +111,12 @@ class Signing:
 
     def accepts(self, frame: bytes | bytearray) -> bool:
         """Whether a frame with a right checksum may be taken; remembers its timestamp if it is signed rightly."""
-        return self._is_right(bytes(frame)) or self._takes_unsigned or _message_id(frame) in _RADIO_IDS
+        return self._is_right(bytes(frame)) or self._takes_unsigned or self._is_radios(frame)
+
+    def _is_radios(self, frame: bytes | bytearray) -> bool:
+        """Whether a frame is a radio's of its own; who has signed has a key, and is none."""
+        sender = _sender(frame)
+        return _message_id(frame) in _RADIO_IDS and all(stream[:2] != sender for stream in self._streams)
 
     def _is_right(self, frame: bytes) -> bool:
         if frame[0] != mavlink.PROTOCOL_MARKER_V2 or not frame[2] & mavlink.MAVLINK_IFLAG_SIGNED:
@@ -133,6 +138,12 @@ class Signing:
 
     def _signature(self, signed: bytes) -> bytes:
         return hashlib.sha256(self._key + signed).digest()[:_SIGNATURE_BYTES]
+
+
+def _sender(frame: bytes | bytearray) -> tuple[int, int]:
+    """Return the frame's system and component."""
+    system, component = frame[3:5] if frame[0] == mavlink.PROTOCOL_MARKER_V1 else frame[5:7]
+    return system, component
 
 
 def _message_id(frame: bytes | bytearray) -> int:

@@ -16,7 +16,7 @@ class CodecStatistics(Struct, frozen=True, kw_only=True):
         unknown_messages: frames whose message id the dialect does not know.
         unknown_ids: the first 64 message ids of these, each with its count, ascending.
         refused_messages: without a right signature where one is required.
-        lost_messages: gaps in the senders' sequence numbers.
+        lost_messages: gaps in the sequence numbers of the first 64 senders.
         late_messages: messages that filled a gap after all.
         doubled_messages: messages that came more than once.
     """

@@ -3,7 +3,8 @@
 Source: MAVLink time synchronization protocol v2, https://mavlink.io/en/services/timesync.html.
 """
 
-from link.mavlink.clock_map import UNIX_TIME_MIN_NS, ClockConfig, ClockMap, RoundTrip, with_round_trip, with_system_time
+from link.mavlink.clock_config import ClockConfig
+from link.mavlink.clock_map import UNIX_TIME_MIN_NS, ClockMap, RoundTrip, with_round_trip, with_system_time
 from link.mavlink.dialect import Message, mavlink
 from link.mavlink.timer import Timer
 

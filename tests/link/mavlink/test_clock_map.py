@@ -151,6 +151,21 @@ def test_a_step_of_utc_is_followed_once_three_messages_tell_of_it() -> None:
     assert clock.boot_to_utc_ns(BOOT_NS + 10 * S) == LOCAL_NS + 10 * S + UTC_AHEAD_NS
 
 
+@pytest.mark.parametrize("known_s", [1, 8])
+@pytest.mark.parametrize("period_ms", [20, 500])
+@pytest.mark.parametrize("rate", [0.0, 0.5, -1.0, 2.0])
+def test_a_utc_that_stands_or_runs_at_another_rate_than_the_boot_clock_is_not_followed(
+    rate: float, period_ms: int, known_s: int
+) -> None:
+    clock = told_once_a_second(known_s)
+    began_ns = (known_s - 1) * S
+    for k in range(1, 10 * S // (period_ms * MS)):
+        since_ns = k * period_ms * MS
+        unix_ns = LOCAL_NS + began_ns + round(rate * since_ns)
+        clock = with_system_time(clock, BOOT_NS + began_ns + since_ns, unix_ns)
+    assert abs((clock.boot_to_utc_ns(BOOT_NS + began_ns + 10 * S) or 0) - (LOCAL_NS + began_ns + 10 * S)) < 500 * MS
+
+
 @pytest.mark.parametrize("steps_ms", [(100,), (190,), (-100, 100), (300, 100, -400)])
 def test_messages_that_tell_of_no_step_together_move_nothing(steps_ms: tuple[int, ...]) -> None:
     clock = told_once_a_second(8)

@@ -116,6 +116,17 @@ def test_gaps_are_counted_for_each_sender_apart() -> None:
     assert receiver.statistics.lost_messages == 3 + 1
 
 
+def test_sequences_of_64_senders_are_followed_and_those_of_whoever_is_made_up_beyond_are_not() -> None:
+    receiver = MavlinkCodec(255, 190)
+    senders = [MavlinkCodec(system, component) for component in (1, 2) for system in range(1, 101)]
+    for _ in range(2):
+        for sender in senders:
+            receiver.decode(sender.encode(position(1)))
+            sender.encode(position(2))  # and this one is lost
+    assert receiver.statistics.messages_received == 2 * len(senders)
+    assert receiver.statistics.lost_messages == 64
+
+
 def test_sequence_numbers_wrap_without_a_gap() -> None:
     codec = MavlinkCodec(1, 191)
     codec.decode(b"".join(frames(600)))

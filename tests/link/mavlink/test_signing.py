@@ -195,3 +195,16 @@ def test_first_frame_of_a_stream_is_taken_up_to_a_minute_late_and_not_longer() -
     for late, is_taken in ((60 * S, True), (60 * S + 1, False)):
         frame = MavlinkCodec(1, 1, signing=Signing(KEY, 3, NOW - late - 1)).encode(beat())  # signs the next one
         assert Signing(KEY, 5, NOW).accepts(frame) is is_taken
+
+
+@pytest.mark.parametrize("version", [1, 2])
+def test_a_radios_status_without_a_key_is_none_of_who_has_signed_and_hides_no_silence(version: int) -> None:
+    session = MavlinkSession(1, target_system_id=1, signing=Signing(KEY, timestamp=NOW))
+    session.receive(MavlinkCodec(1, 1, signing=Signing(KEY, 1, NOW)).encode(beat()), NOW_NS)
+    forger = mavlink.MAVLink(None, srcSystem=1, srcComponent=1)
+    radio = mavlink.MAVLink_radio_status_message(1, 2, 3, 4, 5, 6, 7)
+    for tenths in range(1, 41):
+        session.receive(radio.pack(forger, force_mavlink1=version == 1), NOW_NS + tenths * 10**8)
+        session.poll(NOW_NS + tenths * 10**8)
+    assert session.statistics.codec.refused_messages == 40
+    assert not session.link_up

@@ -1,0 +1,55 @@
+"""Status and plan on their way out, by a thread of their own: a viewer that takes nothing holds up no setpoint.
+
+Zenoh sends to one peer after the other, and waits for each whose queue is full until it gives it up: a computer out of
+radio range costs 0.2 s, five of them a second, after which an autopilot counts its setpoints as lost.
+"""
+
+from typing import Protocol
+
+from link.recording.recorder import BackgroundRecorder
+from link.zenoh.keys import Publication
+
+_CAPACITY = 64  # publications: some seconds of statuses and plans
+
+
+class Publishes(Protocol):
+    """What publications go out by, such as a Zenoh session."""
+
+    def publish(self, key: str, payload: bytes, encoding: str) -> None:
+        """Send `payload` to whoever subscribes to `key`; may wait."""
+
+
+class Outbox:
+    """Publishes what is put into it, in its order.
+
+    Args:
+        session: that it goes out by.
+    """
+
+    def __init__(self, session: Publishes) -> None:
+        self._recorder = BackgroundRecorder(_Sink(session), capacity=_CAPACITY)
+
+    @property
+    def dropped(self) -> int:
+        """How many publications were left out since too many waited."""
+        return self._recorder.dropped
+
+    def put(self, publication: Publication) -> None:
+        """Take a publication; never waits."""
+        self._recorder.put(publication)
+
+    def close(self) -> None:
+        """Publish what is left, as far as it is taken soon."""
+        self._recorder.close()
+
+
+class _Sink:
+    def __init__(self, session: Publishes) -> None:
+        self._session = session
+
+    def write(self, publication: Publication) -> None:
+        """Publish one."""
+        self._session.publish(publication.key, publication.payload, publication.encoding)
+
+    def close(self) -> None:
+        """Do nothing: the session belongs to the loop."""
