@@ -22,6 +22,7 @@ class FolderSource:
         folder: of the pictures.
         start_ns: time of the first one, where names tell none.
         rate_hz: of those.
+        latency_s: by which the times in names are late.
 
     Raises:
         UserError: there is no picture in it.
@@ -29,12 +30,13 @@ class FolderSource:
 
     is_live = False
 
-    def __init__(self, folder: Path, *, start_ns: int, rate_hz: float) -> None:
+    def __init__(self, folder: Path, *, start_ns: int, rate_hz: float, latency_s: float = 0.0) -> None:
         self.name = str(folder)
         self._files = sorted(path for path in folder.iterdir() if path.suffix.lower() in _SUFFIXES)
         if not self._files:
             raise UserError(f"{folder}: there is no picture in it ({', '.join(sorted(_SUFFIXES))})")
         self._start_ns = start_ns
+        self._latency_ns = round(latency_s * NS_PER_S)
         self._period_ns = NS_PER_S / rate_hz
         self._next = 0
         self.refused_why: str | None = None
@@ -52,7 +54,7 @@ class FolderSource:
 
     def _time_of(self, path: Path, index: int) -> int:
         if path.stem.isdigit() and len(path.stem) >= _STAMP_DIGITS:
-            return int(path.stem)
+            return int(path.stem) - self._latency_ns
         return self._start_ns + round(index * self._period_ns)
 
     def has_ended(self) -> bool:
