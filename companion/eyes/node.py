@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass, field
+from enum import Enum, auto
 
 import numpy as np
 
@@ -19,8 +20,14 @@ from link.frames.rotations import matrix_from_quaternion
 from link.messages import BodyTruth, CompressedPicture, PadGeometry, PadSighting
 from link.payloads import cdr
 from link.payloads.checks import PayloadError
+from link.units import NS_PER_S
 from link.zenoh.keys import Keys, Publication
 
+_STAMPS_NS = (int(0.1 * NS_PER_S), (1 << 31) * NS_PER_S - int(0.1 * NS_PER_S))
+"""What a message can hold, less the half of a readout by which a sighting may be before or after its picture.
+
+Below is what a driver sends that fills in no time at all: 0.
+"""
 _SIZE_SPARE = 1.02  # by which a board may be larger than the pad: what tape measures
 
 
@@ -34,12 +41,19 @@ class Counts:
     bad_payloads: int = 0
 
 
+class _Refused(Enum):
+    """What pictures are passed over for."""
+
+    SIZE = auto()
+    TIME = auto()
+
+
 @dataclass(slots=True)
 class _News:
     foreign_ids: set[int] = field(default_factory=set)
     is_seen: bool = False
     is_turned: bool = False
-    has_refused: bool = False
+    refused: set[_Refused] = field(default_factory=set)
     lines: list[str] = field(default_factory=list)
 
 
@@ -97,13 +111,24 @@ class EyesNode:
     def look(self, captured: Captured, *, shows: bool) -> list[Publication]:
         """Return what a frame brings: a sighting, and with `shows` the frame with it drawn in.
 
+        One without a time that can be told is passed over.
+
         Raises:
             UserError: the first frame's size is not the calibration's; later ones of another size are passed over.
         """
         if self.counts.frames and captured.size_px != self._system.camera.size_px:
-            self._refuse(captured.size_px)
+            self._refuse(
+                _Refused.SIZE,
+                "pictures of {} x {} pixels are passed over: the calibration is for {} x {}".format(
+                    *captured.size_px, *self._system.camera.size_px
+                ),
+            )
             return []
         check_size(self._system.camera, captured.size_px)
+        if not _STAMPS_NS[0] <= captured.t_ns <= _STAMPS_NS[1]:
+            why = "pictures without a time are passed over: their stamp should be the UTC of the exposure"
+            self._refuse(_Refused.TIME, why)
+            return []
         frame = Frame(
             t_ns=captured.t_ns,
             picture=WholePicture(captured.shades),
@@ -123,15 +148,12 @@ class EyesNode:
             found.append(Publication(self._keys.pad_view, cdr.encode(shown), cdr.encoding_of(CompressedPicture)))
         return found
 
-    def _refuse(self, size_px: tuple[int, int]) -> None:
+    def _refuse(self, what: _Refused, why: str) -> None:
+        """Count a picture that is passed over, and say why for the first one of its kind."""
         self.counts.bad_payloads += 1
-        if not self._news.has_refused:
-            self._news.has_refused = True
-            self._news.lines.append(
-                "pictures of {} x {} pixels are passed over: the calibration is for {} x {}".format(
-                    *size_px, *self._system.camera.size_px
-                )
-            )
+        if what not in self._news.refused:
+            self._news.refused.add(what)
+            self._news.lines.append(why)
 
     def _count(self, sight: Sight) -> None:
         counts, news = self.counts, self._news

@@ -10,7 +10,7 @@ from link.errors import UserError
 from link.units import NS_PER_S
 
 _SUFFIXES = {".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".pgm"}
-_STAMP_DIGITS = 15  # and more are a stamp in nanoseconds, as EuRoC's and kalibr's folders have them
+_STAMP_DIGITS = range(15, 20)  # are a stamp in nanoseconds, as EuRoC's and kalibr's folders have them; more are a date
 
 
 class FolderSource:
@@ -53,7 +53,7 @@ class FolderSource:
         return None
 
     def _time_of(self, path: Path, index: int) -> int:
-        if path.stem.isdigit() and len(path.stem) >= _STAMP_DIGITS:
+        if path.stem.isdigit() and len(path.stem) in _STAMP_DIGITS:
             return int(path.stem) - self._latency_ns
         return self._start_ns + round(index * self._period_ns)
 

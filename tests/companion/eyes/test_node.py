@@ -104,6 +104,17 @@ def test_later_frame_of_another_size_is_somebody_elses_and_told_once() -> None:
     assert node.look(one, shows=False)
 
 
+@pytest.mark.parametrize("t_ns", [0, 20_261_128_075_437_123_456], ids=["never filled in", "too late"])
+def test_picture_without_a_time_ends_nothing_and_is_told_once(t_ns: int) -> None:
+    one = captured(case(4.0, board=BOARD, aside_m=(0.0, -1.0)))
+    node = EyesNode(replace(system(), mounting=replace(MOUNTING, readout_s=0.03)), KEYS)
+    for _ in range(2):
+        assert node.look(replace(one, t_ns=t_ns), shows=True) == []
+    (told,) = node.take_news()
+    assert told.startswith("pictures without a time are passed over")
+    assert node.look(one, shows=False)
+
+
 def test_pad_that_does_not_fit_is_told_and_ends_nothing_once_the_board_has_been_seen() -> None:
     node = EyesNode(system(), KEYS)
     node.look(captured(case(4.0, board=BOARD)), shows=False)

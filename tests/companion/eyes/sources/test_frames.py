@@ -88,7 +88,7 @@ def test_a_folder_gives_its_pictures_in_order_with_the_times_of_their_names(tmp_
 
 
 def test_pictures_without_times_follow_each_other_at_the_rate(tmp_path: Path) -> None:
-    for name in ("a", "b", "c"):
+    for name in ("20261128075437123456", "b", "c"):
         cv2.imwrite(str(tmp_path / f"{name}.png"), SHADES)
     source = FolderSource(tmp_path, start_ns=7, rate_hz=4.0)
     assert [one.t_ns for _ in range(3) if (one := source.take(0.0)) is not None] == [7, 250_000_007, 500_000_007]
