@@ -73,6 +73,19 @@ def turned_of(alignment: Alignment) -> Turned:
     return Turned(about_x_rad, about_y_rad, float(np.sqrt(covariance[:2, :2].trace() / 2.0)))
 
 
+def upright(R_BP: Array, R_WB: Array) -> Array:
+    """Return the least rotation vector (3,) in B that would have a pad of attitude R_BP lie level.
+
+    Args:
+        R_BP: (3, 3) of the pad.
+        R_WB: (3, 3) of the drone.
+    """
+    normal, up = R_BP[:, 2], R_WB[2]
+    axis = np.cross(normal, up)
+    sine = float(np.linalg.norm(axis))
+    return np.asarray(axis * (math.atan2(sine, float(normal @ up)) / max(sine, 1e-9)))
+
+
 def is_told_wrong(turned: Turned, rotation_std_rad: float) -> bool:
     """Return whether it is turned by more than what is unsure here and what the mounting file allows for."""
     off_rad = math.hypot(turned.about_x_rad, turned.about_y_rad)

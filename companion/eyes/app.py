@@ -40,9 +40,13 @@ def pad_detector() -> None:
 
 
 _LatencyOption = Annotated[
-    float,
+    float | None,
     typer.Option(
-        "--latency", min=0.0, max=2.0, help="Seconds from the middle of an exposure to the picture's arrival."
+        "--latency",
+        metavar="S",
+        min=0.0,
+        max=2.0,
+        help="From the middle of an exposure to its stamp [default: 0.03 as it arrives, 0 of its own].",
     ),
 ]
 _RateOption = Annotated[
@@ -58,7 +62,7 @@ def run_detector(
     board: BoardOption = None,
     mounting: MountingOption = None,
     size: SizeOption = None,
-    latency: _LatencyOption = 0.03,
+    latency: _LatencyOption = None,
     rate: _RateOption = 30.0,
     record: Annotated[
         Path | None, typer.Option("--record", metavar="DIR", help="Keep pictures with what was seen here, as MCAP.")

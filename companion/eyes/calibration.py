@@ -31,6 +31,10 @@ _ROS_MODEL_OF_COUNT = {
     12: "rational_polynomial",
     14: "rational_polynomial",
 }
+_MATRIX = 9  # numbers, row by row
+# Of the larger side. Lens holders are true to some tenths of a millimetre: 0.5 mm are 0.14 of a sensor of 1/4 inch.
+_DECENTRED_SHARE_MAX = 0.2
+_SKEWED_MAX_PX = 0.5  # root mean square of a good calibration
 _COEFFICIENTS: dict[Model, tuple[int, ...]] = {"pinhole": (0, 4, 5, 8, 12, 14), "fisheye": (4,)}
 
 
@@ -102,6 +106,8 @@ def _read(path: Path, table: object, kind: type[_File], camera_of: Callable[[_Fi
 
 
 def _from_ros(file: _RosFile) -> Camera:
+    if len(file.camera_matrix.data) != _MATRIX:
+        raise ValueError(f"camera_matrix has {len(file.camera_matrix.data)} numbers, not {_MATRIX}")
     matrix = np.array(file.camera_matrix.data).reshape(3, 3)
     model = _known(_ROS_MODELS, file.distortion_model)
     return _camera(model, matrix, file.distortion_coefficients.data, (file.image_width, file.image_height))
@@ -130,7 +136,29 @@ def _camera(
     numbers = [*matrix.ravel().tolist(), *distortion.tolist()]
     if not all(isfinite(number) for number in numbers) or min(matrix[0, 0], matrix[1, 1]) <= 0.0 or min(size_px) <= 0:
         raise ValueError("focal lengths and size must be above 0, and all numbers finite")
+    _check_matrix(matrix, size_px)
     return Camera(model=model, matrix=matrix, distortion=distortion, size_px=size_px)
+
+
+def _check_matrix(matrix: NDArray[np.float64], size_px: tuple[int, int]) -> None:
+    """Check that a matrix is one of these models', row by row, and for pictures of this size.
+
+    The matrix of pictures of twice or half the size has the lens's axis elsewhere. OpenCV's models have no skew. Those
+    of fisheyes that state one are read if it moves no pixel by more than what is left of a good calibration.
+    """
+    (fx, skew, cx), (_, fy, cy) = matrix[:2].tolist()
+    if not np.array_equal(matrix, np.array([[fx, skew, cx], [0.0, fy, cy], [0.0, 0.0, 1.0]])):
+        raise ValueError(
+            f"the camera matrix must be fx 0 cx, 0 fy cy, 0 0 1, row by row, not {matrix.ravel().tolist()}"
+        )
+    width, height = size_px
+    if max(abs(cx - 0.5 * width), abs(cy - 0.5 * height)) > _DECENTRED_SHARE_MAX * max(size_px):
+        raise ValueError(
+            f"the axis at {cx:g}, {cy:g} is not near the middle of {width} x {height}: "
+            "give the matrix of pictures of that size"
+        )
+    if abs(skew) * max(cy, height - cy) / fy > _SKEWED_MAX_PX:
+        raise ValueError(f"a skew of {skew:g} px is not modelled: calibrate with it fixed at 0")
 
 
 def dump_calibration(camera: Camera) -> str:

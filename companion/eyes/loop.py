@@ -55,7 +55,9 @@ def failure_of(watch: CameraWatch, now_ns: int) -> Failure | None:
 
 
 _WAIT_S = 0.05
-_RESTART_EVERY_NS = 1_000_000_000
+_TRY_AGAIN_NS = 1_000_000_000  # after one that could not be opened
+_BEGIN_MAX_NS = 5_000_000_000
+"""From opening a camera to its first picture. Some set their exposure first, and a stream waits for a whole picture."""
 _OWN = "own"
 
 
@@ -91,7 +93,7 @@ class EyesLoop:
         self._pad_question = PadQuestion(zenoh, keys.pad)
         self._failed: Failure | None = None
         self._refused_why: str | None = None
-        self._restarted_ns = 0
+        self._restart_due_ns = 0
         self._recorder = recorder
         self._recorded_ns = 0
         self._stopping = False
@@ -111,6 +113,7 @@ class EyesLoop:
         self._log.info("ready", source=self._source.name)
         self._service.ready()
         now_ns = time.monotonic_ns()
+        self._restart_due_ns = now_ns + _BEGIN_MAX_NS
         watch = CameraWatch(came_ns=now_ns, changed_ns=now_ns)
         while not self._stopping and not self._source.has_ended():
             watch = self._turn(watch)
@@ -158,7 +161,7 @@ class EyesLoop:
             self._recorder.put(PictureRecord(captured=captured, drawing=self._node.drawing()))
 
     def _look_after(self, watch: CameraWatch, now_ns: int) -> CameraWatch:
-        """Say when the camera fails and when it is back, and start it again."""
+        """Say when the camera fails and when it is back, and start it again; one just started is left time to begin."""
         failure = failure_of(watch, now_ns)
         if failure is not self._failed:
             if failure is None:
@@ -166,10 +169,13 @@ class EyesLoop:
             else:
                 self._log.warning("camera failed", source=self._source.name, why=failure.value)
             self._failed = failure
-        if failure is not None and now_ns - self._restarted_ns >= _RESTART_EVERY_NS:
-            self._restarted_ns = now_ns
+        if failure is None and watch.samples:  # it gives pictures: if it stops, it is started again at once
+            self._restart_due_ns = now_ns
+        elif failure is not None and now_ns >= self._restart_due_ns:
             try:
                 self._source.restart()
+                self._restart_due_ns = time.monotonic_ns() + _BEGIN_MAX_NS
             except UserError as error:
                 self._log.warning("camera cannot be started", why=str(error))
+                self._restart_due_ns = time.monotonic_ns() + _TRY_AGAIN_NS
         return watch

@@ -2,10 +2,11 @@
 
 import math
 from dataclasses import dataclass, field
+from enum import Enum, auto
 
 import numpy as np
 
-from companion.eyes.alignment import is_told_wrong, no_alignment, turned_of, update_alignment
+from companion.eyes.alignment import is_told_wrong, no_alignment, turned_of, update_alignment, upright
 from companion.eyes.annotation import Drawing, annotate, drawing_of, jpeg_of
 from companion.eyes.attitude import Attitude, attitude_at, with_attitude
 from companion.eyes.calibration import check_size
@@ -19,8 +20,15 @@ from link.frames.rotations import matrix_from_quaternion
 from link.messages import BodyTruth, CompressedPicture, PadGeometry, PadSighting
 from link.payloads import cdr
 from link.payloads.checks import PayloadError
+from link.units import NS_PER_S
 from link.zenoh.keys import Keys, Publication
 
+_STAMPS_NS = (int(0.1 * NS_PER_S), (1 << 31) * NS_PER_S - int(0.1 * NS_PER_S))
+"""What a message can hold, less the half of a readout by which a sighting may be before or after its picture.
+
+Below is what a driver sends that fills in no time at all: 0.
+"""
+_LEANING = 30  # pictures, a second of most cameras: of a board that is carried, or a drone that flares, there are few
 _SIZE_SPARE = 1.02  # by which a board may be larger than the pad: what tape measures
 
 
@@ -34,12 +42,21 @@ class Counts:
     bad_payloads: int = 0
 
 
+class _Refused(Enum):
+    """What pictures are passed over for."""
+
+    SIZE = auto()
+    TIME = auto()
+
+
 @dataclass(slots=True)
 class _News:
     foreign_ids: set[int] = field(default_factory=set)
     is_seen: bool = False
     is_turned: bool = False
-    has_refused: bool = False
+    leaning: int = 0  # pictures since the last sighting
+    has_told_leaning: bool = False
+    refused: set[_Refused] = field(default_factory=set)
     lines: list[str] = field(default_factory=list)
 
 
@@ -97,13 +114,24 @@ class EyesNode:
     def look(self, captured: Captured, *, shows: bool) -> list[Publication]:
         """Return what a frame brings: a sighting, and with `shows` the frame with it drawn in.
 
+        One without a time that can be told is passed over.
+
         Raises:
             UserError: the first frame's size is not the calibration's; later ones of another size are passed over.
         """
         if self.counts.frames and captured.size_px != self._system.camera.size_px:
-            self._refuse(captured.size_px)
+            self._refuse(
+                _Refused.SIZE,
+                "pictures of {} x {} pixels are passed over: the calibration is for {} x {}".format(
+                    *captured.size_px, *self._system.camera.size_px
+                ),
+            )
             return []
         check_size(self._system.camera, captured.size_px)
+        if not _STAMPS_NS[0] <= captured.t_ns <= _STAMPS_NS[1]:
+            why = "pictures without a time are passed over: their stamp should be the UTC of the exposure"
+            self._refuse(_Refused.TIME, why)
+            return []
         frame = Frame(
             t_ns=captured.t_ns,
             picture=WholePicture(captured.shades),
@@ -112,6 +140,7 @@ class EyesNode:
         self._memory, sight = sight_step(self._memory, frame, self._system)
         self._count(sight)
         self._align(frame, sight)
+        self._tell_leaning(frame, sight)
         self._sight = sight
         found: list[Publication] = []
         if sight.sighting is not None:
@@ -123,15 +152,12 @@ class EyesNode:
             found.append(Publication(self._keys.pad_view, cdr.encode(shown), cdr.encoding_of(CompressedPicture)))
         return found
 
-    def _refuse(self, size_px: tuple[int, int]) -> None:
+    def _refuse(self, what: _Refused, why: str) -> None:
+        """Count a picture that is passed over, and say why for the first one of its kind."""
         self.counts.bad_payloads += 1
-        if not self._news.has_refused:
-            self._news.has_refused = True
-            self._news.lines.append(
-                "pictures of {} x {} pixels are passed over: the calibration is for {} x {}".format(
-                    *size_px, *self._system.camera.size_px
-                )
-            )
+        if what not in self._news.refused:
+            self._news.refused.add(what)
+            self._news.lines.append(why)
 
     def _count(self, sight: Sight) -> None:
         counts, news = self.counts, self._news
@@ -172,6 +198,23 @@ class EyesNode:
                 math.degrees(turned.std_rad),
                 *angles_of(matrix_of(off) @ mounting.R_BC),
             )
+        )
+
+    def _tell_leaning(self, frame: Frame, sight: Sight) -> None:
+        """Say once if the board is read again and again where no deck can be: nothing else would show that."""
+        news, mounting = self._news, self._system.mounting
+        if sight.sighting is not None:
+            news.leaning = 0
+        news.leaning += sight.leaning is not None
+        if sight.leaning is None or news.leaning < _LEANING or news.has_told_leaning:
+            return
+        R_WB = np.eye(3) if frame.orientation_wxyz is None else matrix_from_quaternion(frame.orientation_wxyz)
+        off = upright(mounting.R_BC @ matrix_of(sight.leaning[0]), R_WB)
+        news.has_told_leaning = True
+        news.lines.append(
+            "the board is read but not reported: it would lean by {:.0f} degrees, which no deck does; is the camera "
+            "turned otherwise than its --mounting says? About roll_rad = {:.1f}, pitch_rad = {:.1f}, yaw_rad = {:.1f} "
+            "would fit".format(math.degrees(float(np.linalg.norm(off))), *angles_of(matrix_of(off) @ mounting.R_BC))
         )
 
     def take_news(self) -> list[str]:

@@ -70,6 +70,8 @@ class Sight:
         rms_px: of the edges' distances from it.
         tracked: it was found without a search.
         foreign_ids: tags of the family that are not on the board, as far as it was searched.
+        leaning: where the pad was read but not believed, since no pose explains it that is as level as decks are, the
+            most level one.
     """
 
     sighting: PadSighting | None = None
@@ -78,6 +80,7 @@ class Sight:
     rms_px: float | None = None
     tracked: bool = False
     foreign_ids: frozenset[int] = frozenset()
+    leaning: Pose | None = None
 
 
 def sight_step(memory: SightMemory, frame: Frame, system: SightSystem) -> tuple[SightMemory, Sight]:
@@ -114,15 +117,20 @@ def _search(frame: Frame, system: SightSystem, R_WB: Array) -> Sight:
     part = frame.picture.part(whole(frame.picture.size_px))
     foreign: frozenset[int] = frozenset()
     best: tuple[Candidate, Candidate | None] | None = None
+    leaning: Pose | None = None
     for found in search(part, system.board):
         foreign |= found.foreign_ids
-        chosen = choose(_candidates(part, system, R_WB, frame, guesses(system.camera, system.board, found.corners_px)))
+        near = _candidates(part, system, R_WB, frame, guesses(system.camera, system.board, found.corners_px))
+        chosen = choose(near)
         if chosen is not None and (best is None or chosen[0].refined.points > best[0].refined.points):
             best = chosen
+        level = min(near, key=lambda one: one.tilt_stds, default=None)
+        if level is not None and level.tilt_stds > TILT_STDS_MAX:
+            leaning = level.refined.pose
         if best is not None and (best[0].is_complete or found.is_followed_by_mud):
             break
     if best is None:
-        return Sight(foreign_ids=foreign)
+        return Sight(foreign_ids=foreign, leaning=leaning)
     return _sight(frame, system, *best, tracked=False, foreign_ids=foreign)
 
 

@@ -10,7 +10,7 @@ from link.errors import UserError
 from link.units import NS_PER_S
 
 _SUFFIXES = {".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".pgm"}
-_STAMP_DIGITS = 15  # and more are a stamp in nanoseconds, as EuRoC's and kalibr's folders have them
+_STAMP_DIGITS = range(15, 20)  # are a stamp in nanoseconds, as EuRoC's and kalibr's folders have them; more are a date
 
 
 class FolderSource:
@@ -22,6 +22,7 @@ class FolderSource:
         folder: of the pictures.
         start_ns: time of the first one, where names tell none.
         rate_hz: of those.
+        latency_s: by which the times in names are late.
 
     Raises:
         UserError: there is no picture in it.
@@ -29,12 +30,13 @@ class FolderSource:
 
     is_live = False
 
-    def __init__(self, folder: Path, *, start_ns: int, rate_hz: float) -> None:
+    def __init__(self, folder: Path, *, start_ns: int, rate_hz: float, latency_s: float = 0.0) -> None:
         self.name = str(folder)
         self._files = sorted(path for path in folder.iterdir() if path.suffix.lower() in _SUFFIXES)
         if not self._files:
             raise UserError(f"{folder}: there is no picture in it ({', '.join(sorted(_SUFFIXES))})")
         self._start_ns = start_ns
+        self._latency_ns = round(latency_s * NS_PER_S)
         self._period_ns = NS_PER_S / rate_hz
         self._next = 0
         self.refused_why: str | None = None
@@ -51,8 +53,8 @@ class FolderSource:
         return None
 
     def _time_of(self, path: Path, index: int) -> int:
-        if path.stem.isdigit() and len(path.stem) >= _STAMP_DIGITS:
-            return int(path.stem)
+        if path.stem.isdigit() and len(path.stem) in _STAMP_DIGITS:
+            return int(path.stem) - self._latency_ns
         return self._start_ns + round(index * self._period_ns)
 
     def has_ended(self) -> bool:

@@ -53,6 +53,7 @@ class PiCameraSource:
         clock: that gives UTC.
         size_px: width and height of the pictures.
         readout_s: from the first row to the last.
+        latency_s: by which the times that the camera tells are late all the same.
         monotonic_ns: the clock of the camera's stamps.
     """
 
@@ -67,12 +68,14 @@ class PiCameraSource:
         *,
         size_px: tuple[int, int],
         readout_s: float,
+        latency_s: float = 0.0,
         monotonic_ns: MonotonicNs = time.monotonic_ns,
     ) -> None:
         self._open_camera = open_camera
         self._clock = clock
         self._size_px = size_px
         self._readout_ns = round(readout_s * NS_PER_S)
+        self._latency_ns = round(latency_s * NS_PER_S)
         self._monotonic_ns = monotonic_ns
         self._newest: Captured | None = None
         self._came = threading.Condition()
@@ -101,7 +104,7 @@ class PiCameraSource:
     def _captured(self, request: PiRequest) -> Captured:
         told = request.get_metadata()
         first_row_ns = int(told["SensorTimestamp"]) - 500 * int(told["ExposureTime"])  # microseconds, half of them
-        age_ns = self._monotonic_ns() - first_row_ns - self._readout_ns // 2
+        age_ns = self._monotonic_ns() - first_row_ns - self._readout_ns // 2 + self._latency_ns
         width, height = self._size_px
         luma = request.make_array("main")[:height, :width]  # of YUV420 the first rows; padded to the right
         return Captured(t_ns=self._clock.now_ns() - age_ns, shades=np.ascontiguousarray(luma, np.uint8))

@@ -1,4 +1,7 @@
-"""Frames from Zenoh: `sensor_msgs/Image` and `CompressedImage`, with their own stamps."""
+"""Frames from Zenoh: `sensor_msgs/Image` and `CompressedImage`, with their own stamps.
+
+Drivers that do not know when a frame was exposed stamp it as it arrives; these stamps are late by the camera's latency.
+"""
 
 import time
 
@@ -6,6 +9,7 @@ from companion.eyes.sources.frames import Captured, gray_of_file, gray_of_image
 from link.messages import CameraImage, CompressedPicture
 from link.payloads import cdr
 from link.payloads.checks import PayloadError
+from link.units import NS_PER_S
 from link.zenoh.inbox import Inbox
 from link.zenoh.keys import Keys
 from link.zenoh.session import ZenohSession
@@ -18,6 +22,11 @@ PICTURE_MAX_BYTES = 1 << 26
 class ZenohSource:
     """The pictures that are published on the drone's camera keys.
 
+    Args:
+        zenoh: an open session.
+        keys: of the Zenoh contract.
+        latency_s: by which the stamps are late.
+
     Attributes:
         bad_payloads: that were no picture.
         refused_why: what was wrong with the last of them, None while there was none.
@@ -25,11 +34,12 @@ class ZenohSource:
 
     is_live = True
 
-    def __init__(self, zenoh: ZenohSession, keys: Keys) -> None:
+    def __init__(self, zenoh: ZenohSession, keys: Keys, *, latency_s: float = 0.0) -> None:
         self.name = keys.camera_image
         self.bad_payloads = 0
         self.refused_why: str | None = None
         self._zenoh = zenoh
+        self._latency_ns = round(latency_s * NS_PER_S)
         self._raw: Inbox = zenoh.subscribe(keys.camera_image, capacity=_CAPACITY, bytes_max=PICTURE_MAX_BYTES)
         self._files: Inbox = zenoh.subscribe(keys.camera_compressed, capacity=_CAPACITY, bytes_max=PICTURE_MAX_BYTES)
 
@@ -55,9 +65,9 @@ class ZenohSource:
         try:
             if is_file:
                 picture = cdr.decode(CompressedPicture, payload)
-                return Captured(t_ns=picture.t_ns, shades=gray_of_file(picture))
+                return Captured(t_ns=picture.t_ns - self._latency_ns, shades=gray_of_file(picture))
             image = cdr.decode(CameraImage, payload)
-            return Captured(t_ns=image.t_ns, shades=gray_of_image(image))
+            return Captured(t_ns=image.t_ns - self._latency_ns, shades=gray_of_image(image))
         except PayloadError as error:
             self.bad_payloads += 1
             self.refused_why = str(error)

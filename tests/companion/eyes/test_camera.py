@@ -25,6 +25,14 @@ camera_matrix: {rows: 3, cols: 3, data: [612.0, 0.0, 631.5, 0.0, 615.0, 348.0, 0
 distortion_model: %s
 distortion_coefficients: {rows: 1, cols: 4, data: %s}
 """
+ROS_MATRIX = "[612.0, 0.0, 631.5, 0.0, 615.0, 348.0, 0.0, 0.0, 1.0]"
+
+
+def of_matrix(data: str) -> str:
+    """ROS's file with another matrix: transposed as MATLAB has it, cut short, of larger pictures, or skewed."""
+    return ROS.replace(ROS_MATRIX, data) % ("plumb_bob", "[0, 0, 0, 0]")
+
+
 KALIBR = """
 cam0:
   camera_model: pinhole
@@ -100,6 +108,11 @@ def test_a_written_calibration_is_read_back(tmp_path: Path, camera: Camera) -> N
         (ROS % ("plumb_bob", "[1, 2, 3]"), "3 distortion coefficients do not fit"),
         (ROS % ("spherical", "[0, 0, 0, 0]"), "'spherical' is not known"),
         (ROS % ("plumb_bob", "[.nan, 0, 0, 0]"), "all numbers finite"),
+        (of_matrix("[612, 0, 0, 0, 615, 0, 631.5, 348, 1]"), "fx 0 cx, 0 fy cy, 0 0 1, row by row"),
+        (of_matrix("[612, 0, 631.5, 0, 615, 348]"), "camera_matrix has 6 numbers, not 9"),
+        (of_matrix("[1224, 0, 1263, 0, 1230, 696, 0, 0, 1]"), "1263, 696 is not near the middle of 1280 x 720"),
+        (of_matrix("[306, 0, 315.7, 0, 307, 174, 0, 0, 1]"), r"315\.7, 174 is not near the middle of 1280 x 720"),
+        (of_matrix("[612, 1.2, 631.5, 0, 615, 348, 0, 0, 1]"), "a skew of 1.2 px is not modelled"),
         ("cam0: {camera_model: pinhole}", "missing required field `intrinsics`"),
     ],
 )
@@ -108,6 +121,12 @@ def test_a_wrong_calibration_is_refused_with_its_file(tmp_path: Path, text: str,
     with pytest.raises(UserError, match=why) as refused:
         load_calibration(tmp_path / "camera.yaml")
     assert "camera.yaml" in str(refused.value)
+
+
+def test_skew_that_moves_no_pixel_by_half_of_one_is_left_out(tmp_path: Path) -> None:
+    text = of_matrix("[612.0, 0.7, 631.5, 0.0, 615.0, 348.0, 0.0, 0.0, 1.0]")
+    (tmp_path / "camera.yaml").write_text(text, encoding="utf-8")
+    assert load_calibration(tmp_path / "camera.yaml").size_px == (1280, 720)
 
 
 def test_a_picture_of_another_size_is_refused_with_both_sizes() -> None:

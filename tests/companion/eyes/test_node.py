@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from companion.eyes.attitude import GAP_MAX_NS, Attitude, attitude_at, with_attitude
 from companion.eyes.board import load_board, nested_board
 from companion.eyes.camera import matrix_of
+from companion.eyes.mounting import angles_of
 from companion.eyes.node import EyesNode
 from companion.eyes.picture import WholePicture
 from companion.eyes.sources.frames import Captured, gray_of_file
@@ -104,6 +105,17 @@ def test_later_frame_of_another_size_is_somebody_elses_and_told_once() -> None:
     assert node.look(one, shows=False)
 
 
+@pytest.mark.parametrize("t_ns", [0, 20_261_128_075_437_123_456], ids=["never filled in", "too late"])
+def test_picture_without_a_time_ends_nothing_and_is_told_once(t_ns: int) -> None:
+    one = captured(case(4.0, board=BOARD, aside_m=(0.0, -1.0)))
+    node = EyesNode(replace(system(), mounting=replace(MOUNTING, readout_s=0.03)), KEYS)
+    for _ in range(2):
+        assert node.look(replace(one, t_ns=t_ns), shows=True) == []
+    (told,) = node.take_news()
+    assert told.startswith("pictures without a time are passed over")
+    assert node.look(one, shows=False)
+
+
 def test_pad_that_does_not_fit_is_told_and_ends_nothing_once_the_board_has_been_seen() -> None:
     node = EyesNode(system(), KEYS)
     node.look(captured(case(4.0, board=BOARD)), shows=False)
@@ -166,3 +178,32 @@ def test_a_drone_that_turns_over_the_pad_tells_that_its_camera_is_mounted_otherw
     assert degrees is not None
     assert float(degrees[1]) == pytest.approx(math.degrees(0.09), abs=1.0)
     assert not [line for line in right.take_news() if "turned" in line]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("off_rad", [(-0.3, 0.5), (0.0, -0.9)])
+def test_camera_that_is_turned_so_far_that_no_sighting_is_believed_is_told_once(off_rad: tuple[float, float]) -> None:
+    R_off = matrix_of(np.array([*off_rad, 0.0]))
+    node = EyesNode(replace(system(), mounting=replace(MOUNTING, R_BC=R_off.T @ MOUNTING.R_BC)), KEYS)
+    one = case(2.0, board=BOARD)
+    for index in range(40):
+        t_ns = 10**9 + index * 33_000_000
+        node.receive_own(own(replace(one, frame=replace(one.frame, t_ns=t_ns))))
+        assert node.look(replace(captured(one), t_ns=t_ns), shows=False) == []
+    (told,) = node.take_news()
+    assert f"lean by {math.degrees(math.hypot(*off_rad)):.0f} degrees" in told
+    found = [float(number) for number in re.findall(r"_rad = (-?[0-9.]+)", told)]
+    assert found == pytest.approx(angles_of(MOUNTING.R_BC), abs=0.1)
+
+
+@pytest.mark.slow
+def test_board_that_leans_for_a_moment_is_not_told() -> None:
+    node = EyesNode(system(), KEYS)
+    level, leaning = case(2.0, board=BOARD), case(2.0, board=BOARD, roll_pitch_yaw_rad=(0.5, 0.0, 0.7))
+    said = replace(leaning, frame=replace(leaning.frame, orientation_wxyz=level.frame.orientation_wxyz))
+    for index in range(60):
+        one = level if index % 20 == 19 else said
+        t_ns = 10**9 + index * 33_000_000
+        node.receive_own(own(replace(one, frame=replace(one.frame, t_ns=t_ns))))
+        node.look(replace(captured(one), t_ns=t_ns), shows=False)
+    assert set(node.take_news()) == {"pad seen", "pad lost"}

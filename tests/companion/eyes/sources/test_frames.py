@@ -1,5 +1,6 @@
 import time
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import cv2
@@ -18,8 +19,11 @@ from companion.eyes.sources.file_source import FolderSource
 from companion.eyes.sources.frames import gray_of_file, gray_of_image
 from link.errors import UserError
 from link.messages import CameraImage, CompressedPicture
+from link.payloads import cdr
 from link.payloads.checks import PayloadError
 from link.program.clock import Clock, SystemClock
+from link.records import replace
+from link.zenoh.inbox import Inbox, Sample, WakeUp
 from link.zenoh.keys import Keys
 from tests.companion.eyes.frames import system
 
@@ -84,7 +88,7 @@ def test_a_folder_gives_its_pictures_in_order_with_the_times_of_their_names(tmp_
 
 
 def test_pictures_without_times_follow_each_other_at_the_rate(tmp_path: Path) -> None:
-    for name in ("a", "b", "c"):
+    for name in ("20261128075437123456", "b", "c"):
         cv2.imwrite(str(tmp_path / f"{name}.png"), SHADES)
     source = FolderSource(tmp_path, start_ns=7, rate_hz=4.0)
     assert [one.t_ns for _ in range(3) if (one := source.take(0.0)) is not None] == [7, 250_000_007, 500_000_007]
@@ -139,3 +143,27 @@ def test_a_camera_that_stops_and_one_that_freezes_are_told_within_half_a_second(
         watch = note_frame(watch, SHADES, now_ns)
     assert failure_of(watch, STOPPED_NS + 10) is Failure.FROZEN
     assert failure_of(note_frame(watch, other, STOPPED_NS + 20), STOPPED_NS + 30) is None
+
+
+def test_latency_that_was_measured_counts_for_stamps_that_pictures_bring_along(tmp_path: Path) -> None:
+    wake_up, keys = WakeUp(), Keys()
+    inboxes = {key: Inbox(capacity=4, wake_up=wake_up) for key in (keys.camera_image, keys.camera_compressed)}
+    session: Any = SimpleNamespace(subscribe=lambda key, **_: inboxes[key], wake_up=wake_up)
+    stamp_ns = 1_763_708_400_000_000_000
+    cv2.imwrite(str(tmp_path / f"{stamp_ns}.png"), SHADES)
+    file = CompressedPicture(t_ns=stamp_ns, format="png", data=(tmp_path / f"{stamp_ns}.png").read_bytes())
+    raw = replace(image("mono8", SHADES), t_ns=stamp_ns)
+    for latency_s, late_ns in ((None, 0), (0.06, 60_000_000)):
+        options = opening.SourceOptions(size_px=None, latency_s=latency_s, rate_hz=30.0)
+        for address, key, message in (
+            ("zenoh", keys.camera_image, raw),
+            ("zenoh", keys.camera_compressed, file),
+            (str(tmp_path), "", None),
+        ):
+            source = opening.open_source(address, options, keys, session)
+            if message is not None:
+                inboxes[key].put(Sample(key=key, payload=cdr.encode(message), received_ns=0))
+            captured = source.take(0.0)
+            assert captured is not None
+            assert captured.t_ns == stamp_ns - late_ns
+    wake_up.close()

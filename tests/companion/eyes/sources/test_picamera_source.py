@@ -66,3 +66,14 @@ def test_without_picamera2_it_is_said_how_to_install_it() -> None:
     options = SourceOptions(size_px=SIZE_PX, latency_s=0.0, rate_hz=30.0)
     with pytest.raises(UserError, match="python3-picamera2"):
         open_source("picamera", options, Keys("decklander", "vehicle", "drone"), None)  # type: ignore[arg-type]  # unused
+
+
+def test_latency_that_was_measured_counts_beside_what_the_camera_tells() -> None:
+    camera = Camera()
+    source = PiCameraSource(
+        lambda: camera, Clock(), size_px=SIZE_PX, readout_s=0.0, latency_s=0.007, monotonic_ns=lambda: NOW_NS
+    )
+    captured = source.take(5.0)
+    source.close()
+    assert captured is not None
+    assert captured.t_ns == UTC_NS - 40_000_000 - 3_000_000 - 7_000_000
