@@ -20,7 +20,7 @@ _EXAMPLES = {
         "pad-detector run --source picamera --calibration camera.yaml --mounting mounting.toml",
         "pad-detector run --source zenoh --calibration camera.yaml --mounting mounting.toml --board b.toml",
     ),
-    "print": ("pad-detector print --out pad.pdf", "pad-detector print --side 0.5 --first-id 63 --out small.pdf"),
+    "print": ("pad-detector print --out pad.pdf", "pad-detector print --side 0.5 --out small.pdf --save-board small.toml"),
     "calibrate": (
         "pad-detector calibrate --source /dev/video0 --out camera.yaml",
         "pad-detector calibrate --source pictures/ --pictures 60 --out camera.yaml",
@@ -127,6 +127,8 @@ def print_board(
         raise UserError("--first-id is for a board that --side makes: give --side, or leave it out")
     if size is not None and not 0.1 <= size <= 5.0:
         raise UserError(f"--side {size:g} is not from 0.1 to 5 m")
+    if size is not None and save_board is None:  # taken for the default board it would be seen too far away
+        raise UserError("--side makes a board that `run` has to know: add --save-board FILE, and give run --board FILE")
     config = load_board(board).config if size is None else nested_board(size, first_id)
     write_pdf(config, out)
     if save_board is not None:

@@ -90,6 +90,7 @@ MISTAKES = [
     ("pad-detector", "run --calibration camera.yaml", ["camera.yaml", "camera_matrix", "cam0"]),
     ("pad-detector", "print --board board.toml", ["board.toml", "0 to 586", "900"]),
     ("pad-detector", "print --side 9", ["--side 9", "0.1 to 5 m"]),
+    ("pad-detector", "print --side 0.5", ["--save-board FILE", "--board FILE"]),
     ("pad-detector", "print --out none/pad.pdf", ["none/pad.pdf", "--out"]),
     ("scenarios", "camera straight_5", ["straight_5", "+camera=day"]),
     # options and values
