@@ -20,7 +20,7 @@ _EXAMPLES = {
         "pad-detector run --source picamera --calibration camera.yaml --mounting mounting.toml",
         "pad-detector run --source zenoh --calibration camera.yaml --mounting mounting.toml --board b.toml",
     ),
-    "print": ("pad-detector print --out pad.pdf", "pad-detector print --side 0.5 --out small.pdf --save-board small.toml"),
+    "print": ("pad-detector print --out pad.pdf", "pad-detector print --side 0.5 --out b.pdf --save-board b.toml"),
     "calibrate": (
         "pad-detector calibrate --source /dev/video0 --out camera.yaml",
         "pad-detector calibrate --source pictures/ --pictures 60 --out camera.yaml",
