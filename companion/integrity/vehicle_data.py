@@ -168,9 +168,10 @@ def _off_max_rad(pad: PadPath, speed_m_s: float, config: CompanionConfig) -> flo
 
 
 def _judge(watch: CourseWatch, off_max_rad: float, unsure_rad: float, slip_rad: float) -> CourseWatch:
-    """Return the watch after a comparison: doubts and a bend's slip excuse a heading that has agreed, and prove none.
+    """Return the watch after a comparison.
 
-    One that was contradicted is believed again where neither can hide that it is off.
+    Doubts about the course widen the limit that contradicts a heading, and a bend's slip that of one that has agreed.
+    One that was contradicted is believed again well within the limit, which no doubt widens then and a slip narrows.
     """
     off_rad = abs(math.atan2(watch.off_sin, watch.off_cos))
     if watch.off_rad is None:

@@ -1,7 +1,8 @@
 """The action server of a landing: a goal starts it, its statuses are the feedback, and how it ends is the result.
 
-One goal at a time, as there is one drone. Zenoh's threads bring requests and the program's loop statuses, so all that
-is kept is under one lock.
+One goal at a time, as there is one drone. Zenoh's threads bring requests, the program's loop replies to commands, and
+the publishing thread statuses, so all that is kept is under one lock. Only `tell` publishes, after it has released the
+lock: a client that takes nothing more holds up that thread, and never the loop.
 """
 
 import threading
@@ -54,22 +55,26 @@ class LandAction:
         self._goals: dict[bytes, tuple[int, int]] = {}
         self._results: dict[bytes, bytes] = {}
         self._waiting: list[tuple[bytes, Answer]] = []
+        self._has_news = False
         there = endpoints(name)
         self._feedback, self._status = node.publisher(there["feedback"]), node.latched_publisher(there["status"])
         for what, serve in (("send", self._send_goal), ("get", self._get_result), ("cancel", self._cancel_goal)):
             node.serve(there[what], serve)
 
     def tell(self, status: LandingStatus) -> None:
-        """Take a status of the landing."""
+        """Take a status of the landing, and tell of the goals; waits where a client takes nothing more."""
         with self._lock:
             goal_id = self._active
-            if goal_id is None:
-                return
             self._has_begun = self._has_begun or status.phase not in _ENDED
-            if not self._has_begun or status.phase not in _ENDED:
-                self._feedback.publish(feedback_message(goal_id, status))
-                return
-            self._finish(goal_id, status)
+            goes_on = not self._has_begun or status.phase not in _ENDED
+            if goal_id is not None and not goes_on:
+                self._finish(goal_id, status)
+            goals, has_news = self._goals, self._has_news
+            self._has_news = False
+        if has_news:
+            self._status.publish(status_array(goals))
+        if goal_id is not None and goes_on:
+            self._feedback.publish(feedback_message(goal_id, status))
 
     def _send_goal(self, request: bytes, answer: Answer) -> None:
         try:
@@ -128,7 +133,7 @@ class LandAction:
         self._take(json_messages.encode(Order(command=Command.ABORT)), aborted)
 
     def _finish(self, goal_id: bytes, status: LandingStatus) -> None:
-        """Keep and tell how a goal has ended; the lock is held."""
+        """Keep how a goal has ended, and tell who waits for that; the lock is held."""
         before, t_ns = self._goals.get(goal_id, (_EXECUTING, time.time_ns()))
         success = status.phase == _SECURED
         ended = _SUCCEEDED if success else _CANCELED if before == _CANCELING else _ABORTED
@@ -142,6 +147,6 @@ class LandAction:
         self._waiting = [one for one in self._waiting if one[0] != goal_id]
 
     def _set_status(self, goal_id: bytes, status: int, t_ns: int) -> None:
-        """Tell a goal's status; the lock is held."""
+        """Keep a goal's status to be told; the lock is held."""
         self._goals = dict([*self._goals.items()][-_KEPT_MAX:]) | {goal_id: (status, t_ns)}
-        self._status.publish(status_array(self._goals))
+        self._has_news = True

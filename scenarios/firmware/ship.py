@@ -100,9 +100,9 @@ def ship_at(
 
 def _sailed(speed_m_s: float, ordered_m_s: float, dt_s: float) -> tuple[float, float, float]:
     """Return the way since the report, the speed after it, and the acceleration along it."""
-    if speed_m_s == 0.0:
-        return 0.0, 0.0, 0.0  # when it has been ordered to move is told by the report that it does
-    speeding_up_s = min(dt_s, max(ordered_m_s - speed_m_s, 0.0) / SPEEDS_UP_M_S2)
+    if speed_m_s == 0.0 or speed_m_s >= ordered_m_s:  # one that lies tells by its next report that it sails
+        return speed_m_s * dt_s, speed_m_s, 0.0
+    speeding_up_s = min(dt_s, (ordered_m_s - speed_m_s) / SPEEDS_UP_M_S2)
     reached_m_s = speed_m_s + SPEEDS_UP_M_S2 * speeding_up_s
     way_m = 0.5 * (speed_m_s + reached_m_s) * speeding_up_s + reached_m_s * (dt_s - speeding_up_s)
     return way_m, reached_m_s, SPEEDS_UP_M_S2 if dt_s <= speeding_up_s else 0.0

@@ -110,7 +110,7 @@ def test_a_drone_that_sees_a_brake_above_where_it_commits_does_not_land() -> Non
 
 
 def test_a_drone_whose_setpoints_are_led_is_level_at_the_contact_where_another_still_leans() -> None:
-    leans = descent(turns_hz=4.0, level_m_s2=1.0, level_below_m=0.12)
+    leans = descent(turns_hz=4.0, level_m_s2=1.0, level_below_m=0.08)
     leans.course.left_m_s2[:] = 3.0
     as_it_comes, led = (
         roll_out(samples(), leans._replace(drone=leans.drone._replace(led_share=share)), 0.1)[0, TILT]
@@ -119,6 +119,31 @@ def test_a_drone_whose_setpoints_are_led_is_level_at_the_contact_where_another_s
     level_rad = math.atan(1.5 / GRAVITY_M_S2) - math.atan(0.5 / GRAVITY_M_S2)  # air and 1 m/s^2, at the most
     assert led < level_rad + 0.02
     assert as_it_comes > led + 0.03
+
+
+@pytest.mark.parametrize("slope", [(0.15, 0.0), (0.05, 0.14), (-0.21, 0.1)])
+def test_a_drone_that_levels_leans_with_a_deck_that_tilts_and_gains_little_speed_by_that(
+    slope: tuple[float, float],
+) -> None:
+    upright, levels = descent(level_below_m=-1.0), descent(level_below_m=0.1)
+    for one in (upright, levels):
+        one.course.slope[:] = slope
+        one.course.air_enu_m_s2[:] = 0.0
+    tilts_rad = [roll_out(samples(), one, 0.1)[0, TILT] for one in (upright, levels)]
+    assert tilts_rad[0] == pytest.approx(math.atan(math.hypot(*slope)))
+    assert tilts_rad[1] == pytest.approx(math.atan(levels.drone.level_m_s2 / GRAVITY_M_S2), abs=0.03)
+    assert roll_out(samples(), levels, 0.1)[0, SPEED] < 0.35
+
+
+@pytest.mark.parametrize("now", [-0.15, 0.0, 0.15])
+def test_a_drone_levels_against_the_deck_as_it_will_tilt_at_the_contact_not_as_it_tilts_before(now: float) -> None:
+    tilts_rad = []
+    for later in (0.0, 0.15):
+        swings = descent(level_below_m=0.1)
+        swings.course.air_enu_m_s2[:] = 0.0
+        swings.course.slope[:, 0] = np.interp(DT_S * np.arange(len(swings.course.slope)), [0.0, 0.7], [now, later])
+        tilts_rad.append(roll_out(samples(), swings, 0.1)[0, TILT])
+    assert tilts_rad == pytest.approx([0.0, math.atan(swings.drone.level_m_s2 / GRAVITY_M_S2)], abs=0.02)
 
 
 @pytest.mark.parametrize("share", [0.0, 0.4, 1.0])
@@ -155,6 +180,8 @@ def test_machine_code_is_its_python(monkeypatch: pytest.MonkeyPatch) -> None:
         "steer",
         "plan",
         "follow",
+        "_contact_at",
+        "_levels",
         "_touch",
         "_fly",
     ):

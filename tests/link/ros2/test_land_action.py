@@ -1,8 +1,11 @@
 """The action of a landing over a real router, by a client that writes out its own bytes; its hashes and its rules."""
 
 import struct
-from collections.abc import Iterator
+import threading
+from collections.abc import Callable, Iterator
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
 import zenoh
@@ -11,6 +14,7 @@ from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 from link.messages import Command, CommandReply, LandingStatus, Order
 from link.payloads import json_messages
 from link.records import replace
+from link.ros2.land_action import LandAction
 from link.ros2.land_types import FEEDBACK, GOAL, RESULT, endpoints
 from link.ros2.names import data_key
 from link.ros2.options import Ros2Options
@@ -186,6 +190,42 @@ def test_refused_start_is_a_rejected_goal_and_another_may_come(client: Client) -
     assert not client.send()
     client.refuses = False
     assert client.send(OTHER)
+
+
+def test_client_that_takes_no_feedback_holds_up_no_reply_to_a_command() -> None:
+    is_waiting, goes_on = threading.Event(), threading.Event()
+    services: dict[str, Callable[[bytes, Callable[[bytes], None]], None]] = {}
+    replies: list[Callable[[bytes], None]] = []
+    answers: list[bytes] = []
+
+    def publish(_: bytes) -> None:
+        is_waiting.set()
+        goes_on.wait(20.0)
+
+    node: Any = SimpleNamespace(
+        publisher=lambda _: SimpleNamespace(publish=publish),
+        latched_publisher=lambda _: SimpleNamespace(publish=publish),
+        serve=lambda endpoint, take: services.update({endpoint.name.rpartition("/")[2]: take}),
+    )
+    action = LandAction(node, "/drone/landing/land", lambda _, reply: replies.append(reply))
+    services["send_goal"](HEAD + GOAL_ID + b"\0", answers.append)
+    teller = threading.Thread(target=action.tell, args=(STATUS,))
+    teller.start()
+    assert is_waiting.wait(20.0)
+    accepted = json_messages.encode(CommandReply(accepted=True, reason=""))
+
+    def answer_both() -> None:  # as the program's loop does
+        replies[0](accepted)
+        services["cancel_goal"](HEAD + GOAL_ID + bytes(8), answers.append)
+        replies[1](accepted)
+
+    loop = threading.Thread(target=answer_both, daemon=True)
+    loop.start()
+    loop.join(5.0)
+    are_answered = len(answers) == 2
+    goes_on.set()
+    teller.join(20.0)
+    assert are_answered
 
 
 def test_action_file_says_what_is_sent() -> None:

@@ -77,6 +77,20 @@ def test_ship_speeds_up_to_what_was_ordered_as_the_simulation_has_it() -> None:
     assert math.hypot(*full.velocity_enu_m_s) == pytest.approx(5.0)
 
 
+@pytest.mark.parametrize("after_ns", [-5_000_000, 0, 5_000_000], ids=["before", "at", "after"])
+def test_ship_at_its_speed_speeds_up_at_no_instant_about_its_report(after_ns: int) -> None:
+    report = ShipReport(
+        boot_ns=0,
+        latitude_rad=DATUM.latitude_rad,
+        longitude_rad=DATUM.longitude_rad,
+        speed_m_s=5.0,
+        yaw_rad=math.radians(20.0),
+    )
+    ship = ship_at(report, 10 * NS, 10 * NS + after_ns, DATUM, turn_radius_m=500.0, ordered_m_s=5.0)
+    assert math.hypot(*ship.velocity_enu_m_s) == pytest.approx(5.0)
+    assert math.hypot(*ship.acceleration_enu_m_s2) == pytest.approx(5.0**2 / 500.0)
+
+
 def test_ship_lies_where_and_as_its_first_report_has_it() -> None:
     latitude_rad, longitude_rad, _ = geodetic_from_enu(DATUM, (-1.5, -40.0, 0.0))
     first = ShipReport(
