@@ -28,7 +28,7 @@ UNIX_TIME_MAX_NS = 2_147_400_000 * 10**9
 # With fewer round trips the drift is a guess: a simulation at several times real time would look like endless steps.
 _STEP_TRIPS_MIN = 5
 _STEP_AGREE = 3  # readings in a row that tell of the same step before it is believed: one may be anybody's, or garbled
-_DRIFT_STDS_MAX = 5.0  # of UTC against boot time: one quartz makes both, and no step is farther off than that
+_SLOW_STDS_MAX = 5.0  # of UTC behind boot time: one quartz makes both, and no step is farther off than that
 
 
 class RoundTrip(NamedTuple):
@@ -166,7 +166,8 @@ def with_system_time(
         clock: what was known.
         boot_ns: its time since boot.
         unix_ns: its UTC; passed over before `UNIX_TIME_MIN_NS` (0 is the usual "unknown") and after `UNIX_TIME_MAX_NS`.
-            One that stands still, or runs backwards or at another rate than boot time, is no UTC: that known goes on.
+            One that stands still, or runs backwards or slower than boot time, is no UTC: that known goes on, lest the
+            time of whoever follows it stop. One that runs faster is the computer's, of a simulation that falls behind.
         config: how clocks are followed.
 
     Returns:
@@ -184,7 +185,7 @@ def with_system_time(
     oldest_ns = boot_ns - config.window_ns
     pairs = (*(one for one in pairs if one.x_ns >= oldest_ns), *news)[-config.pairs_max :]
     fitted = _fit(pairs, line, config)
-    if abs(fitted.drift) > _DRIFT_STDS_MAX * config.drift_std:
+    if fitted.drift < -_SLOW_STDS_MAX * config.drift_std:
         return replace(clock, doubted_times=news)
     return replace(clock, system_times=pairs, doubted_times=(), boot_to_utc=fitted)
 

@@ -58,8 +58,7 @@ def levelling_now(
     escape_m = 0.0 if memory.progress.phase is Phase.DESCEND else config.descent.commit_height_m
     asked = np.zeros(2) if memory.model.reference is None else memory.model.reference.acceleration_enu_m_s2[:2]
     tracking = memory.model.tracking
-    to_contact_s = max(relative.height_m, 0.0) / max(-relative.climb_m_s, config.descent.sink.contact_rate_m_s)
-    beside = tracking.holds_enu_m_s2 + GRAVITY_M_S2 * slope_at(pad, to_contact_s)
+    beside = tracking.holds_enu_m_s2 + GRAVITY_M_S2 * slope_at(pad, _to_contact_s(memory, relative, config))
     kept_m_s2, below_m = level_end(pad, relative, inputs, config)
     air = tracking.air_enu_m_s2
     takes_s = max(math.hypot(*(asked + beside - air).tolist()) - kept_m_s2, 0.0) / limits.jerk_max_m_s3
@@ -68,6 +67,13 @@ def levelling_now(
         return None
     most_m_s2 = min(math.hypot(*air.tolist()) + kept_m_s2, limits.tilt_acceleration_m_s2)
     return Levelling(leans_max_m_s2=most_m_s2, beside_enu_m_s2=beside, jerk_max_m_s3=limits.jerk_max_m_s3)
+
+
+def _to_contact_s(memory: StepMemory, relative: Approach, config: CompanionConfig) -> float:
+    """Return when the drone touches; one that breaks off is level with the deck as it is."""
+    if memory.progress.phase is Phase.ABORT:
+        return 0.0
+    return max(relative.height_m, 0.0) / max(-relative.climb_m_s, config.descent.sink.contact_rate_m_s)
 
 
 def level_end(pad: PadPath, relative: Approach, inputs: StepInputs, config: CompanionConfig) -> tuple[float, float]:

@@ -1,6 +1,4 @@
-"""What the tilt leaves of the acceleration, and a drone that is levelled so as not to touch down with one foot."""
-
-import math
+"""A drone is levelled so as not to touch down with one foot."""
 
 import numpy as np
 import pytest
@@ -13,8 +11,8 @@ from companion.core.data import GRAVITY_M_S2, Array, FlightLimits, OwnState
 from companion.landing.state.memory import StepMemory
 from companion.landing.state.step_data import LinkDelay, StepInputs
 from companion.landing.steering.flown_plan import FlownPlan, state_in_plan
-from companion.landing.touchdown.levelling import Levelling, levelled, levelling_now, limit_tilt
-from companion.planning.guidance import PlanRequest, ReferenceState, Target, Trajectory
+from companion.landing.touchdown.levelling import Levelling, levelled, levelling_now
+from companion.planning.guidance import Trajectory
 from companion.situation.own_drone import drone_now
 from companion.situation.phases import Phase
 from companion.situation.situation import Situation
@@ -100,6 +98,18 @@ def _holding(holds_enu_m_s2: Array, air_enu_m_s2: Array | None = None) -> StepMe
     return replace(DESCENDS, model=replace(DESCENDS.model, tracking=tracking))
 
 
+def _tilting(slope: Array) -> PadSwing:
+    n = len(slope)
+    return PadSwing(
+        slope=slope,
+        shake_enu=np.zeros((3, n, 2)),
+        climb_std_m_s=np.zeros(n),
+        tilt_std_rad=np.zeros((n, 4)),
+        above_m=1.5,
+        heave_rad_s=6.0,
+    )
+
+
 def _sinking(height_m: float, sink_m_s: float) -> Situation:
     here = situation(height_m)
     return replace(here, drone=drone_at(height_m, 0.0, (0.0, 0.0, -sink_m_s), pad=pad_at()))
@@ -157,14 +167,7 @@ def test_a_drone_over_a_deck_that_tilts_away_from_it_is_levelled_earlier(slope: 
     facts = _sinking(CONFIG.touchdown.level.height_m + 0.05, 0.4)
     pad = facts.pad
     assert pad is not None
-    north = PadSwing(
-        slope=np.tile([0.0, slope], (len(pad.offset_s), 1)),
-        shake_enu=np.zeros((3, len(pad.offset_s), 2)),
-        climb_std_m_s=np.zeros(len(pad.offset_s)),
-        tilt_std_rad=np.zeros((len(pad.offset_s), 4)),
-        above_m=1.5,
-        heave_rad_s=6.0,
-    )
+    north = _tilting(np.tile([0.0, slope], (len(pad.offset_s), 1)))
     limits = replace(LIMITS, jerk_max_m_s3=20.0)
     flies = _holding(np.array([0.0, 2.0]), np.array([0.0, 2.0]))
     levelling = levelling_now(
@@ -173,6 +176,21 @@ def test_a_drone_over_a_deck_that_tilts_away_from_it_is_levelled_earlier(slope: 
     assert (levelling is not None) is levels
     if levelling is not None:
         assert levelling.beside_enu_m_s2.tolist() == pytest.approx([0.0, 2.0 + slope * GRAVITY_M_S2])
+
+
+@pytest.mark.parametrize(("phase", "height_m", "slope"), [(Phase.DESCEND, 0.045, 0.05), (Phase.ABORT, 0.2, 0.0)])
+def test_a_drone_levels_with_the_deck_at_its_contact_and_with_that_of_now_as_it_climbs_away(
+    phase: Phase, height_m: float, slope: float
+) -> None:
+    facts = _sinking(height_m, CONFIG.descent.sink.contact_rate_m_s)  # the lower one touches in 0.1 s
+    pad = facts.pad
+    assert pad is not None
+    tilts = _tilting(0.5 * np.column_stack([pad.offset_s, np.zeros(len(pad.offset_s))]))
+    levelling = levelling_now(
+        changed(DESCENDS, phase=phase), replace(facts, pad=replace(pad, swing=tilts)), INPUTS, CONFIG
+    )
+    assert levelling is not None
+    assert levelling.beside_enu_m_s2.tolist() == pytest.approx([slope * GRAVITY_M_S2, 0.0])
 
 
 def test_a_drone_that_leans_against_the_wind_of_its_way_may_lean_to_either_side_as_much() -> None:
@@ -236,65 +254,3 @@ def test_lean_is_the_sine_of_the_tilt(orientation_wxyz: tuple[float, float, floa
     drone = drone_now(own, NOW_NS, 0.0, 1.0)
     assert drone is not None
     assert drone.lean == pytest.approx(lean, abs=1e-6)
-
-
-sides = st.floats(-math.pi, math.pi)
-thrusts = st.floats(2.0, 9.0)
-shares = st.floats(0.0, 0.79)  # of the thrust to the side, which the air takes
-
-
-def _turned(length: float, angle_rad: float) -> Array:
-    return np.array([length * math.cos(angle_rad), length * math.sin(angle_rad)])
-
-
-def _tilts(tilt_m_s2: float) -> FlightLimits:
-    return replace(LIMITS, acceleration_max_m_s2=100.0, tilt_acceleration_m_s2=tilt_m_s2)
-
-
-def _left_m_s2(needed: Array, holds_enu_m_s2: Array, limits: FlightLimits) -> float:
-    """What is left of a drone's tilt that is wanted off where it is, by (2,)."""
-    offset_s = np.arange(0.0, 1.0, 0.2)
-    still = np.zeros((len(offset_s), 3))
-    request = PlanRequest(
-        state=ReferenceState(
-            position_enu_m=np.zeros(3), velocity_enu_m_s=np.zeros(3), acceleration_enu_m_s2=np.zeros(3)
-        ),
-        target=Target(
-            offset_s=offset_s,
-            position_enu_m=still + np.array([*needed, 0.7]),
-            velocity_enu_m_s=still,
-            acceleration_enu_m_s2=still,
-        ),
-        limits=limits,
-        floor_enu_m=still[:, 2],
-        dt_s=0.02,
-    )
-    return limit_tilt(request, holds_enu_m_s2).acceleration_max_m_s2
-
-
-@given(tilt_m_s2=thrusts, share=shares, to_rad=sides, air_rad=sides)
-def test_acceleration_and_what_holds_against_the_air_are_within_the_tilt_together(
-    tilt_m_s2: float, share: float, to_rad: float, air_rad: float
-) -> None:
-    air = _turned(share * tilt_m_s2, air_rad)
-    left_m_s2 = _left_m_s2(_turned(3.0, to_rad), air, _tilts(tilt_m_s2))
-    assert math.hypot(*(_turned(left_m_s2, to_rad) + air).tolist()) == pytest.approx(tilt_m_s2)
-
-
-@given(tilt_m_s2=thrusts, to_rad=sides)
-def test_in_still_air_all_of_the_tilt_is_left(tilt_m_s2: float, to_rad: float) -> None:
-    assert _left_m_s2(_turned(3.0, to_rad), np.zeros(2), _tilts(tilt_m_s2)) == pytest.approx(tilt_m_s2)
-
-
-@given(tilt_m_s2=thrusts, share=st.floats(0.01, 1.0), air_rad=sides, off_rad=st.floats(-1.4, 1.4))
-def test_more_is_left_to_brake_than_to_go_faster(
-    tilt_m_s2: float, share: float, air_rad: float, off_rad: float
-) -> None:
-    air = _turned(share * tilt_m_s2, air_rad)
-    faster, slower = (_turned(3.0, air_rad + off_rad + turned_rad) for turned_rad in (0.0, math.pi))
-    assert _left_m_s2(slower, air, _tilts(tilt_m_s2)) > _left_m_s2(faster, air, _tilts(tilt_m_s2)) > 0.0
-
-
-def test_tilt_raises_no_limit_and_one_that_is_not_known_lowers_none() -> None:
-    for tilt_m_s2 in (101.0, math.inf):
-        assert _left_m_s2(np.array([2.0, 1.0]), np.array([-3.0, 4.0]), _tilts(tilt_m_s2)) == 100.0
