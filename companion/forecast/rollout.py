@@ -89,6 +89,30 @@ def steer(model: Array, state: Array, off: Array, known: Array, drone: Follower)
 
 
 @compiled_kernel
+def lean_change(
+    asked: tuple[float, float],
+    before: tuple[float, float],
+    beside: tuple[float, float],
+    leans_max_m_s2: float,
+    change_max_m_s2: float,
+) -> tuple[float, float]:
+    """Return by how much the acceleration of a path changes, so that its drone leans by no more than it may.
+
+    Args:
+        asked: acceleration that the path is to have.
+        before: that it has.
+        beside: thrust by mass that the drone leans by beside the path's acceleration.
+        leans_max_m_s2: of the horizontal thrust by mass.
+        change_max_m_s2: of the acceleration.
+    """
+    lx, ly = asked[0] + beside[0], asked[1] + beside[1]
+    back = min(1.0, leans_max_m_s2 / max(math.hypot(lx, ly), 1e-9))
+    jx, jy = lx * back - beside[0] - before[0], ly * back - beside[1] - before[1]
+    back = min(1.0, change_max_m_s2 / max(math.hypot(jx, jy), 1e-9))
+    return jx * back, jy * back
+
+
+@compiled_kernel
 def plan(
     model: Array, jerk: tuple[float, float], expected: Array, beside: Array, bounds: tuple[float, float, float]
 ) -> None:
@@ -106,12 +130,9 @@ def plan(
     bx, by = expected[0] + model[2, 0], expected[1] + model[2, 1]
     ax, ay = bx + jerk[0] * share, by + jerk[1] * share
     back = min(1.0, most_m_s2 / max(math.hypot(ax, ay), 1e-9))
-    lx, ly = ax * back + beside[0], ay * back + beside[1]
-    back = min(1.0, leans_m_s2 / max(math.hypot(lx, ly), 1e-9))
-    jx, jy = lx * back - beside[0] - bx, ly * back - beside[1] - by
-    back = min(1.0, jerk_max_m_s3 * DT_S / max(math.hypot(jx, jy), 1e-9))
-    model[2, 0] += jx * back
-    model[2, 1] += jy * back
+    change = lean_change((ax * back, ay * back), (bx, by), (beside[0], beside[1]), leans_m_s2, jerk_max_m_s3 * DT_S)
+    model[2, 0] += change[0]
+    model[2, 1] += change[1]
     for i in range(2):
         model[0, i] += (model[1, i] + 0.5 * model[2, i] * DT_S) * DT_S
         model[1, i] += model[2, i] * DT_S
@@ -171,8 +192,7 @@ def _fly(path: Array, samples: Samples, sample: int, descent: Descent, out: Arra
     model, state = course.model.copy(), samples.deviation[sample].copy()
     known, off, expected, lean = np.zeros((3, 2)), np.empty((2, 2)), np.empty(2), np.empty(2)
     before_m_s2, held, waited = np.empty(2), course.air_enu_m_s2 + state[3], 0
-    holds, beside = np.empty(2), np.empty(2)
-    trims_m_s2 = math.hypot(course.air_enu_m_s2[0], course.air_enu_m_s2[1])
+    holds, beside, trims_m_s2 = np.empty(2), np.empty(2), math.hypot(course.air_enu_m_s2[0], course.air_enu_m_s2[1])
     # By another sample's numbers than those of its gusts, and so independent of them.
     error, others = path[0, :2].copy(), samples.pushes[sample - 1]
     left = math.exp(-drone.relearns_hz * DT_S)

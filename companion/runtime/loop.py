@@ -12,7 +12,7 @@ from companion.runtime.computer import ComputerWatch
 from companion.runtime.live_state import Onlooker, onlookers
 from companion.runtime.node import CompanionNode
 from companion.runtime.options import Links, LoopOptions, Timings
-from companion.runtime.outbox import Outbox
+from companion.runtime.outbox import outbox
 from companion.runtime.recorded_node import RecordingNode
 from companion.runtime.sent_frames import SentFrames
 from companion.runtime.start_and_handover import OwnStart, hand_over
@@ -43,11 +43,11 @@ def run(node: CompanionNode, links: Links, options: LoopOptions) -> Timings:
             tlog = BackgroundRecorder(TlogSink(options.tlog))
             stack.callback(tlog.close)
         lookers = onlookers(stack, links.zenoh, links.keys, options.device)
-        outbox = Outbox(links.zenoh)
-        stack.callback(outbox.close)
+        publications = outbox(links.zenoh)
+        stack.callback(publications.close)
         log = Log("companion")
         stack.callback(log.close)
-        return _Loop(node, links, options, tlog=tlog, lookers=lookers, log=log, outbox=outbox).run()
+        return _Loop(node, links, options, tlog=tlog, lookers=lookers, log=log, outbox=publications).run()
 
 
 class _Loop:
@@ -60,7 +60,7 @@ class _Loop:
         tlog: Recorder | None,
         lookers: list[Onlooker],
         log: Log,
-        outbox: Outbox,
+        outbox: Recorder,
     ) -> None:
         self._node = node
         self._keys = keys = links.keys

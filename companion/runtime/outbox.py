@@ -6,7 +6,7 @@ radio range costs 0.2 s, five of them a second, after which an autopilot counts 
 
 from typing import Protocol
 
-from link.recording.recorder import BackgroundRecorder
+from link.recording.recorder import BackgroundRecorder, Recorder
 from link.zenoh.keys import Publication
 
 _CAPACITY = 64  # publications: some seconds of statuses and plans
@@ -19,28 +19,9 @@ class Publishes(Protocol):
         """Send `payload` to whoever subscribes to `key`; may wait."""
 
 
-class Outbox:
-    """Publishes what is put into it, in its order.
-
-    Args:
-        session: that it goes out by.
-    """
-
-    def __init__(self, session: Publishes) -> None:
-        self._recorder = BackgroundRecorder(_Sink(session), capacity=_CAPACITY)
-
-    @property
-    def dropped(self) -> int:
-        """How many publications were left out since too many waited."""
-        return self._recorder.dropped
-
-    def put(self, publication: Publication) -> None:
-        """Take a publication; never waits."""
-        self._recorder.put(publication)
-
-    def close(self) -> None:
-        """Publish what is left, as far as it is taken soon."""
-        self._recorder.close()
+def outbox(session: Publishes) -> Recorder:
+    """Return what publishes each `Publication` that is put into it by the session, in order; further ones it drops."""
+    return BackgroundRecorder(_Sink(session), capacity=_CAPACITY)
 
 
 class _Sink:

@@ -13,6 +13,7 @@ from msgspec import Struct
 
 from companion.config.companion import CompanionConfig
 from companion.core.data import GRAVITY_M_S2, Array, FlightLimits
+from companion.forecast.rollout import lean_change
 from companion.landing.state.memory import StepMemory
 from companion.landing.state.step_data import StepInputs
 from companion.landing.steering.flown_plan import FlownPlan
@@ -95,13 +96,21 @@ def level_end(pad: PadPath, relative: Approach, inputs: StepInputs, config: Comp
 
 def levelled(flown: FlownPlan, levelling: Levelling) -> FlownPlan:
     """Return a plan whose drone leans by no more than it may, once its lean has changed to that."""
-    path, beside = flown.trajectory, levelling.beside_enu_m_s2
+    path = flown.trajectory
+    beside_x, beside_y = levelling.beside_enu_m_s2.tolist()
     position, velocity = path.position_enu_m.copy(), path.velocity_enu_m_s.copy()
     acceleration = path.acceleration_enu_m_s2.copy()
     for node, dt_s in enumerate(np.diff(path.offset_s).tolist(), start=1):
-        before, leans = acceleration[node - 1, :2], acceleration[node, :2] + beside
-        change = _shortened(leans, levelling.leans_max_m_s2) - beside - before
-        now = before + _shortened(change, levelling.jerk_max_m_s3 * dt_s)
+        (before_x, before_y, _), (asked_x, asked_y, _) = acceleration[node - 1 : node + 1].tolist()
+        change = lean_change(
+            (asked_x, asked_y),
+            (before_x, before_y),
+            (beside_x, beside_y),
+            levelling.leans_max_m_s2,
+            levelling.jerk_max_m_s3 * dt_s,
+        )
+        before = acceleration[node - 1, :2]
+        now = before + change
         since_m_s = velocity[node - 1, :2] * dt_s
         position[node, :2] = position[node - 1, :2] + since_m_s + (before / 3.0 + now / 6.0) * dt_s**2
         velocity[node, :2] = velocity[node - 1, :2] + 0.5 * (before + now) * dt_s
@@ -112,11 +121,6 @@ def levelled(flown: FlownPlan, levelling: Levelling) -> FlownPlan:
             path, position_enu_m=position, velocity_enu_m_s=velocity, acceleration_enu_m_s2=acceleration
         ),
     )
-
-
-def _shortened(vector: Array, most: float) -> Array:
-    size = math.hypot(*vector.tolist())
-    return vector if size <= most else vector * (most / size)
 
 
 def limit_tilt(request: PlanRequest, holds_enu_m_s2: Array) -> FlightLimits:

@@ -182,6 +182,7 @@ def test_machine_code_is_its_python(monkeypatch: pytest.MonkeyPatch) -> None:
         "follow",
         "_contact_at",
         "_levels",
+        "lean_change",
         "_touch",
         "_fly",
     ):

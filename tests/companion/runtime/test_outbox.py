@@ -12,7 +12,7 @@ from companion.config.companion import CompanionConfig
 from companion.runtime import loop
 from companion.runtime.build import build_node
 from companion.runtime.options import Links, LoopOptions
-from companion.runtime.outbox import Outbox
+from companion.runtime.outbox import outbox
 from link.transports.transport import PeerBytes, Transport, TransportStatistics
 from link.zenoh.inbox import Alive, Inbox, WakeUp
 from link.zenoh.keys import Keys, Publication
@@ -115,13 +115,13 @@ def test_loop_turns_on_while_nobody_takes_what_is_published(session: StalledSess
 
 
 def test_publications_go_out_in_order_and_those_that_nobody_takes_are_bounded(session: StalledSession) -> None:
-    outbox = Outbox(session)
-    outbox.put(Publication(key="0", payload=b"", encoding=""))
+    publications = outbox(session)
+    publications.put(Publication(key="0", payload=b"", encoding=""))
     assert session.is_waiting.wait(DEADLINE_S)
     for number in range(1, 1000):
-        outbox.put(Publication(key=str(number), payload=b"", encoding=""))
+        publications.put(Publication(key=str(number), payload=b"", encoding=""))
     session.goes_on.set()
-    outbox.close()
+    publications.close()
     assert session.taken == [str(number) for number in range(len(session.taken))]
-    assert len(session.taken) + outbox.dropped == 1000
+    assert len(session.taken) + publications.dropped == 1000
     assert len(session.taken) < 100

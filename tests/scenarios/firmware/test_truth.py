@@ -41,15 +41,20 @@ def test_motors_are_told_by_each_firmwares_own_message() -> None:
     assert set(rotor_truth(NS, armed=False).speed_rad_s) == {0.0}
 
 
-def test_ship_drives_on_its_circle_between_reports() -> None:
-    radius_m, speed_m_s = 500.0, 8.0
-    report = ShipReport(
+def _northwards(speed_m_s: float) -> ShipReport:
+    """Return the report of a ship at the datum that heads north."""
+    return ShipReport(
         boot_ns=0,
         latitude_rad=DATUM.latitude_rad,
         longitude_rad=DATUM.longitude_rad,
         speed_m_s=speed_m_s,
-        yaw_rad=math.radians(90.0),  # to the north
+        yaw_rad=math.radians(90.0),
     )
+
+
+def test_ship_drives_on_its_circle_between_reports() -> None:
+    radius_m, speed_m_s = 500.0, 8.0
+    report = _northwards(speed_m_s)
     angle_rad = speed_m_s * 2.0 / radius_m
     ship = ship_at(report, 10 * NS, 12 * NS, DATUM, turn_radius_m=radius_m, ordered_m_s=speed_m_s)
     arc = (radius_m * (1.0 - math.cos(angle_rad)), radius_m * math.sin(angle_rad), 0.0)
@@ -60,13 +65,7 @@ def test_ship_drives_on_its_circle_between_reports() -> None:
 
 
 def test_ship_speeds_up_to_what_was_ordered_as_the_simulation_has_it() -> None:
-    sails = ShipReport(
-        boot_ns=0,
-        latitude_rad=DATUM.latitude_rad,
-        longitude_rad=DATUM.longitude_rad,
-        speed_m_s=2.0,
-        yaw_rad=math.radians(90.0),
-    )
+    sails = _northwards(2.0)
     speeding, full = (
         ship_at(sails, 0, after_ns, DATUM, turn_radius_m=500.0, ordered_m_s=5.0) for after_ns in (NS // 2, 2 * NS)
     )
@@ -79,13 +78,7 @@ def test_ship_speeds_up_to_what_was_ordered_as_the_simulation_has_it() -> None:
 
 @pytest.mark.parametrize("after_ns", [-5_000_000, 0, 5_000_000], ids=["before", "at", "after"])
 def test_ship_at_its_speed_speeds_up_at_no_instant_about_its_report(after_ns: int) -> None:
-    report = ShipReport(
-        boot_ns=0,
-        latitude_rad=DATUM.latitude_rad,
-        longitude_rad=DATUM.longitude_rad,
-        speed_m_s=5.0,
-        yaw_rad=math.radians(20.0),
-    )
+    report = _northwards(5.0)
     ship = ship_at(report, 10 * NS, 10 * NS + after_ns, DATUM, turn_radius_m=500.0, ordered_m_s=5.0)
     assert math.hypot(*ship.velocity_enu_m_s) == pytest.approx(5.0)
     assert math.hypot(*ship.acceleration_enu_m_s2) == pytest.approx(5.0**2 / 500.0)
