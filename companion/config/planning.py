@@ -24,8 +24,8 @@ class GuidanceKind(Enum):
 class SolverKind(Enum):
     """Which QP solver."""
 
-    DAQP = "daqp"  # dual active set: exact, 13 us for 14 variables and 74 constraints
-    OSQP = "osqp"  # operator splitting, polished: 1 ms for the same
+    DAQP = "daqp"  # dual active set: exact, some 60 us for a plan
+    OSQP = "osqp"  # operator splitting, polished: some ms for the same
 
 
 class ReportReading(Enum):
@@ -68,7 +68,6 @@ class MpcConfig(StrictModel):
     touch_time_s: Positive = 1.0
     intercept_fraction: Fraction = 0.92  # of the acceleration limit that intercepts are planned with
     intercept_time_min_s: Positive = 1.4  # shorter ways are slowed down to this: the law is linear near the target
-    lateral_speed_fraction: Fraction = 0.01  # of the speed limit kept for the minor axis beside the target's speed
     axes_time_s: Positive = 1.0  # a relative speed turns the major axis like the distance it covers in this time
 
     @model_validator(mode="after")

@@ -1,12 +1,10 @@
-"""The quadratic programme of one axis: track a reference over the horizon inside bounds.
+"""The cost of a plan on one axis: track a reference over the horizon.
 
-Variables: the jerk of each block, then one slack >= 0 each for speed, acceleration and, where there is a
-floor, height. Minimise half of the integral of `e'Qe + r (u - u_ref)^2`, `e` the error of [p, v, a], plus `e'Pe` at
-the horizon's end with P of the infinite-horizon problem (algebraic Riccati equation), plus an exact penalty on the
-slacks. The jerk's bounds are hard, all others soft: with finite numbers the programme is always feasible.
-All matrices are built once; a plan only makes vectors, in compiled calls.
+Minimise half of the integral of `e'Qe + r (u - u_ref)^2`, `e` the error of [p, v, a], plus `e'Pe` at the horizon's end
+with P of the infinite-horizon problem (algebraic Riccati equation). What bounds the plan is in `constraints` and
+`envelope`. All matrices are built once; a plan only makes vectors, in compiled calls.
 
-Its prediction matrices are those of a triple integrator driven by jerk that is constant over blocks. State `x = [p, v,
+The prediction matrices are those of a triple integrator driven by jerk that is constant over blocks. State `x = [p, v,
 a]` in m, m/s, m/s^2; input the jerk `u` (m,) in m/s^3, one value per block of the horizon. At node time t after now,
 exactly, `p = p0 + v0 t + a0 t^2/2 + sum_i u_i (c3(t - b_i) - c3(t - e_i))`, `c3(x) = max(x, 0)^3 / 6`, for the block
 from `b_i` to `e_i`; likewise v with `c2(x) = max(x, 0)^2 / 2` and a with `c1(x) = max(x, 0)`.
@@ -95,31 +93,25 @@ def forced_response(t_s: Array, move_s: Array) -> tuple[Array, Array, Array]:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class AxisProblem:
-    """The constant matrices of the programme.
+class AxisCost:
+    """The constant matrices of the cost.
 
     Attributes:
-        model: the predictions behind them.
-        H: (q, q) Hessian over the m moves and the slacks.
-        A: (c, q) constraint matrix, rows as `envelope.bound_rows` orders them.
+        H: (m, m) Hessian over the moves.
         weights: (3 + 3 n + 1, m) gradient with respect to the moves: per position, velocity and acceleration of the
             state, per position, velocity and acceleration of the reference at each node, and per jerk reference.
-        slack_weight: the penalty's slope.
     """
 
-    model: AxisModel
     H: Array
-    A: Array
     weights: Array
-    slack_weight: float
 
 
 @compiled_kernel
 def slopes_of(weights: Array, x: Array, reference: Array, jerk: Array) -> Array:
-    """Return the linear terms (3, m) of the axes' programmes over the moves; a slack has `AxisProblem.slack_weight`.
+    """Return the linear terms (3, m) of the axes' costs over the moves.
 
     Args:
-        weights: as `AxisProblem` has them.
+        weights: as `AxisCost` has them.
         x: (3, 3) the state: position, velocity, acceleration; axis.
         reference: (3, 3, n) of position, velocity, acceleration; axis; node.
         jerk: (3, m) the reference of the moves.
@@ -139,31 +131,14 @@ def slopes_of(weights: Array, x: Array, reference: Array, jerk: Array) -> Array:
     return slopes
 
 
-def make_axis_problem(model: AxisModel, config: MpcConfig, *, floor_lead_s: float | None) -> AxisProblem:
-    """Return the constant matrices for `model` with the weights of `config`.
-
-    Args:
-        model: the predictions.
-        config: the weights.
-        floor_lead_s: 0 with a floor for the position, more with one for the position that is carried on by its rate
-            for this long, None without one.
-    """
-    moves = len(model.move_s)
-    slacks = 2 if floor_lead_s is None else 3
+def make_axis_cost(model: AxisModel, config: MpcConfig) -> AxisCost:
+    """Return the constant matrices for `model` with the weights of `config`."""
     forced = np.concatenate((model.forced_p, model.forced_v, model.forced_a))
     free = np.concatenate((model.free_p, model.free_v, model.free_a))
     weight = _cost_of_states(model, config)
     move_weight = config.jerk_weight * model.move_s
-    H = np.zeros((moves + slacks, moves + slacks))
-    H[:moves, :moves] = forced.T @ weight @ forced + np.diag(move_weight)
-    H[moves:, moves:] = config.slack_weight * np.eye(slacks)
-    return AxisProblem(
-        model=model,
-        H=0.5 * (H + H.T),
-        A=_constraints(model, floor_lead_s, slacks),
-        weights=np.vstack(((forced.T @ weight @ free).T, weight @ forced, move_weight)),
-        slack_weight=config.slack_weight,
-    )
+    H = forced.T @ weight @ forced + np.diag(move_weight)
+    return AxisCost(H=0.5 * (H + H.T), weights=np.vstack(((forced.T @ weight @ free).T, weight @ forced, move_weight)))
 
 
 def _cost_of_states(model: AxisModel, config: MpcConfig) -> Array:
@@ -185,26 +160,3 @@ def terminal_cost(config: MpcConfig) -> Array:
     weights = np.diag([config.position_weight, config.velocity_weight, config.acceleration_weight])
     cost: Array = solve_continuous_are(drift, jerk, weights, np.array([[config.jerk_weight]]))
     return cost
-
-
-def _constraints(model: AxisModel, floor_lead_s: float | None, slacks: int) -> Array:
-    """Return A: each soft bound is widened by its slack, velocity's the first, then acceleration's, then height's."""
-    moves = len(model.move_s)
-
-    def widened(rows: Array, slack: int, sign: float) -> Array:
-        columns = np.zeros((len(rows), slacks))
-        columns[:, slack] = sign
-        return np.hstack((rows, columns))
-
-    ends = model.forced_a[model.end_node[1:] - 1]
-    blocks = [
-        np.eye(moves, moves + slacks),
-        np.hstack((np.zeros((slacks, moves)), np.eye(slacks))),
-        widened(model.forced_v, 0, 1.0),
-        widened(model.forced_v, 0, -1.0),
-        widened(ends, 1, 1.0),
-        widened(ends, 1, -1.0),
-    ]
-    if floor_lead_s is not None:
-        blocks.append(widened(model.forced_p + floor_lead_s * model.forced_v, 2, 1.0))
-    return np.ascontiguousarray(np.vstack(blocks))

@@ -1,9 +1,9 @@
-"""The default guidance law: model predictive control with preview of the target, per axis, inside the flight limits.
+"""The default guidance law: model predictive control with preview of the target, inside the flight limits.
 
 Far from the target the reference is not the target itself but the time-optimal way to it (`intercept`), so that a
-horizon of 3 s brakes in time from any speed and the programme stays well scaled; near it the two are the same. The
-horizontal axes are turned to where the motion is needed. The major one is solved first, with a share of the limits;
-the minor one then gets what the major one's plan leaves of each norm, node by node.
+horizon of 3 s brakes in time from any speed and the programme stays well scaled; near it the two are the same. Both
+horizontal axes are one programme, since they share the limits of speed, acceleration and jerk; they are turned to where
+the motion is needed. The vertical axis is a programme of its own.
 """
 
 from functools import lru_cache, partial
@@ -12,8 +12,9 @@ import numpy as np
 
 from companion.config.planning import MpcConfig
 from companion.core.data import Array
-from companion.planning.axis_qp import forced_response, free_response, make_axis_model, make_axis_problem
+from companion.planning.axis_qp import forced_response, free_response, make_axis_cost, make_axis_model
 from companion.planning.brake import brake
+from companion.planning.constraints import level_hessian, level_rows, vertical_hessian, vertical_rows
 from companion.planning.guidance import (
     PlanRequest,
     PlanResult,
@@ -24,7 +25,7 @@ from companion.planning.guidance import (
     limits_of,
     with_finite_state,
 )
-from companion.planning.programmes import Numbers, PlainLimits, Posed, Statics, bound_minor, plan_of, pose
+from companion.planning.programmes import Numbers, PlainLimits, Posed, Statics, plan_of, pose
 from companion.planning.qp import Programme, make_solver
 from companion.planning.resample import make_resampler
 
@@ -36,20 +37,22 @@ class Mpc:
         solver = make_solver(config.solver)
         model = make_axis_model(np.array(config.moves_s), config.node_spacing_max_s)
         self._touch_time_s = float(config.touch_time_s)
-        leads_s = (None, 0.0, self._touch_time_s)
-        problems = [make_axis_problem(model, config, floor_lead_s=lead_s) for lead_s in leads_s]
-        self._level, self._above, self._onto = (Programme(solver, problem.H, problem.A) for problem in problems)
+        cost = make_axis_cost(model, config)
+        self._level = Programme(solver, level_hessian(cost, config.slack_weight), level_rows(model))
+        upright = vertical_hessian(cost, config.slack_weight)
+        self._above, self._onto = (
+            Programme(solver, upright, vertical_rows(model, lead_s)) for lead_s in (0.0, self._touch_time_s)
+        )
         self._nodes_s = np.append(0.0, model.node_s)
         self._responses = lru_cache(maxsize=64)(partial(_responses, self._nodes_s, np.array(config.moves_s)))
-        self._forced_v, self._grid = model.forced_v, (self._nodes_s, model.move_s, model.end_s)
+        grid = (self._nodes_s, model.move_s, model.end_s)
         numbers = Numbers(
             axes_time_s=config.axes_time_s,
             intercept_fraction=config.intercept_fraction,
             intercept_time_min_s=config.intercept_time_min_s,
-            lateral_speed_fraction=config.lateral_speed_fraction,
             slack_weight=config.slack_weight,
         )
-        self._statics: Statics = (self._grid, model.end_node, (*numbers,), problems[0].weights)
+        self._statics: Statics = (grid, model.end_node, (*numbers,), cost.weights)
 
     def plan(self, memory: ReferenceState | None, request: PlanRequest) -> tuple[ReferenceState, PlanResult]:
         """Return the next state as memory, and the plan."""
@@ -58,13 +61,13 @@ class Mpc:
         if posed is None and not is_finite_state(request.state):
             request = with_finite_state(memory, request)
             posed = self._pose(request, limits)
-        result = brake(request, PlanStatus.FAILED, 0) if posed is None else self._plan(request, limits, posed)
+        result = brake(request, PlanStatus.FAILED, 0) if posed is None else self._plan(request, posed)
         return result.next_state, result
 
     def _pose(self, request: PlanRequest, limits: PlainLimits) -> Posed | None:
-        """Return the problem of a plan, all but its minor axis's bounds; None where the request is not finite."""
+        """Return the problem of a plan; None where the request is not finite."""
         state, resampler = request.state, make_resampler(request.target.offset_s, self._nodes_s)
-        posed = np.empty((5, 3)), self._level.blank(), self._level.blank(), self._above.blank()
+        posed = np.empty((5, 3)), self._level.blank(), self._above.blank()
         floor_enu_m, lead_s = request.floor_enu_m, 0.0
         if request.touched_enu_m is not None:
             floor_enu_m, lead_s = request.touched_enu_m, self._touch_time_s
@@ -79,26 +82,22 @@ class Mpc:
         )
         return posed if is_finite else None
 
-    def _plan(self, request: PlanRequest, limits: PlainLimits, posed: Posed) -> PlanResult:
+    def _plan(self, request: PlanRequest, posed: Posed) -> PlanResult:
         """Return the plan of a request without NaN."""
-        frame, major, minor, vertical = posed
-        status, x, iterations = self._level.solve(major)
-        if x is None:
+        frame, level, vertical = posed
+        status, moves, iterations = self._level.solve(level)
+        if moves is None:
             return brake(request, status, iterations)
-        bound_minor(frame, x, self._forced_v, limits, self._grid, minor)
-        status, y, more = self._level.solve(minor)
-        if y is None:
-            return brake(request, status, iterations + more)
         upright = self._above if request.touched_enu_m is None else self._onto
-        status, z, most = upright.solve(vertical)
-        if z is None:
-            return brake(request, status, iterations + more + most)
-        return self._result(frame, (x, y, z), request.dt_s, iterations + more + most)
+        status, climb, more = upright.solve(vertical)
+        if climb is None:
+            return brake(request, status, iterations + more)
+        return self._result(frame, moves, climb, request.dt_s, iterations + more)
 
-    def _result(self, frame: Array, moves: tuple[Array, Array, Array], dt_s: float, iterations: int) -> PlanResult:
+    def _result(self, frame: Array, level: Array, vertical: Array, dt_s: float, iterations: int) -> PlanResult:
         """Return the plan in W: at 0, at the nodes, and at `dt_s`."""
         path = np.empty((3, len(self._nodes_s) + 1, 3))
-        excess = plan_of(frame, moves, self._responses(dt_s), path)
+        excess = plan_of(frame, level, vertical, self._responses(dt_s), path)
         return PlanResult(
             next_state=ReferenceState(
                 position_enu_m=path[0, -1],

@@ -1,9 +1,8 @@
-"""What one plan gives to the solver and what it makes of the answers, in three compiled calls.
+"""What one plan gives to the solver and what it makes of the answers, in two compiled calls.
 
 Between the solver's calls a plan is arithmetic on small arrays, which costs more to call than to do. Plain tuples go
 in and get their names inside: named ones take numba five times as long to recognise. Results are written into arrays
-that go in as well: numpy makes one in a third of the time that a compiled function needs to hand one out. The split of
-the acceleration norm is the angle at which the sum of the times that both horizontal axes need to the target is least.
+that go in as well: numpy makes one in a third of the time that a compiled function needs to hand one out.
 """
 
 import math
@@ -15,7 +14,7 @@ from numpy.typing import NDArray
 from companion.core.data import Array
 from companion.planning.axis_qp import slopes_of
 from companion.planning.compiled import compiled_kernel
-from companion.planning.envelope import major_bounds, minor_bounds, vertical_bounds
+from companion.planning.envelope import level_bounds, vertical_bounds
 from companion.planning.horizon import turned_horizon
 from companion.planning.intercept import approach
 from companion.planning.qp import Problem
@@ -60,7 +59,6 @@ class Numbers(NamedTuple):
     axes_time_s: float
     intercept_fraction: float
     intercept_time_min_s: float
-    lateral_speed_fraction: float
     slack_weight: float
 
 
@@ -70,12 +68,12 @@ PlainLimits = tuple[float, float, float, float, float, float, float]
 PlainGrid = tuple[Array, Array, Array]
 """`Grid` as a plain tuple."""
 
-Statics = tuple[PlainGrid, NDArray[np.int64], tuple[float, float, float, float, float], Array]
+Statics = tuple[PlainGrid, NDArray[np.int64], tuple[float, float, float, float], Array]
 """What all plans of a law have in common: `Grid` as a plain tuple, the places (m + 1,) of now and of the blocks' ends
-among its nodes, `Numbers` as a plain tuple, and the weights of the linear terms as `AxisProblem` has them."""
+among its nodes, `Numbers` as a plain tuple, and the weights of the linear terms as `AxisCost` has them."""
 
-Posed = tuple[Array, Problem, Problem, Problem]
-"""The problem of a plan in turned axes: the frame, and the programmes of the major, the minor and the vertical axis.
+Posed = tuple[Array, Problem, Problem]
+"""The problem of a plan in turned axes: the frame, the programme of both horizontal axes and that of the vertical one.
 
 The frame (5, 3) has position, velocity and acceleration in its rows, the axes in their columns; then, in W, the place
 of the target now and the direction of the major axis.
@@ -107,7 +105,7 @@ def pose(
     statics: Statics,
     posed: Posed,
 ) -> bool:
-    """Write the problem of a plan, all but the bounds of its minor axis.
+    """Write the problem of a plan.
 
     Args:
         state: of the virtual model now.
@@ -124,26 +122,24 @@ def pose(
     most, grid, numbers = Limits(*limits), Grid(*statics[0]), Numbers(*statics[2])
     node_s, end_s = grid.nodes_s[1:], grid.end_s
     path = resampled_path(target[:3], sampling[0], sampling[1])
-    direction, x, turned = turned_horizon(state, path, most.speed_m_s, most.acceleration_m_s2, numbers.axes_time_s)
+    direction, x, turned = turned_horizon(state, path, numbers.axes_time_s)
     floor = resampled_line(target[3], sampling[0], sampling[1])
     for node in range(len(floor)):
         floor[node] -= path[0, 0, 2]
-    frame, major, minor, upright = posed
+    frame, level, upright = posed
     put_frame(frame, x, path, direction)
     rates = (most.speed_m_s, most.climb_m_s, most.descent_m_s, most.acceleration_m_s2, most.vertical_acceleration_m_s2)
     lowest = floor if lead_s == 0.0 else np.full(len(floor), -math.inf)
-    split, push, reference = approach(
+    reference = approach(
         x[:2], grid.nodes_s, turned, lowest, rates, numbers.intercept_fraction, numbers.intercept_time_min_s
     )
-    ends, jerk = at_ends(turned[2], statics[1], grid.move_s)
+    jerk = mean_jerks(turned[2], statics[1], grid.move_s)
     norms = (most.speed_m_s, most.acceleration_m_s2, most.jerk_m_s3)
-    way = (split, push[1], numbers.lateral_speed_fraction)
     vertical = (most.descent_m_s, most.climb_m_s, most.vertical_acceleration_m_s2, most.vertical_jerk_m_s3)
     slopes = slopes_of(statics[3], x, reference, jerk)
-    put_linear(major[0], slopes[0], numbers.slack_weight)
-    put_linear(minor[0], slopes[1], numbers.slack_weight)
-    put_linear(upright[0], slopes[2], numbers.slack_weight)
-    major_bounds(x, turned[1, 1], ends[1], way, norms, node_s, end_s, major[1:])
+    put_linear(level[0], slopes[:2], numbers.slack_weight)
+    put_linear(upright[0], slopes[2:], numbers.slack_weight)
+    level_bounds(x, norms, end_s, level[1:])
     vertical_bounds(x[:, 2], floor[1:], lead_s, vertical, node_s, end_s, upright[1:])
     return math.isfinite(total_of(state, target) + sampling[1][0, 0, 0])
 
@@ -159,53 +155,49 @@ def put_frame(frame: Array, x: Array, path: Array, direction: tuple[float, float
 
 @compiled_kernel
 def put_linear(term: Array, slopes: Array, slack_weight: float) -> None:
-    """Write a linear term (q,): `slopes` (m,) of the moves, then those of the slacks."""
-    for i in range(len(term)):
-        term[i] = slopes[i] if i < len(slopes) else slack_weight
+    """Write a linear term (q,): `slopes` (k, m) of the moves of each axis, then those of the slacks."""
+    axes, moves = slopes.shape
+    term[:] = slack_weight
+    for axis in range(axes):
+        for move in range(moves):
+            term[axis * moves + move] = slopes[axis, move]
 
 
 @compiled_kernel
-def at_ends(acceleration: Array, end_node: NDArray[np.int64], move_s: Array) -> tuple[Array, Array]:
-    """Return the accelerations (3, n + 1) now and at the ends of the blocks, (3, m + 1), and the mean jerks (3, m)."""
-    ends, jerk = np.empty((3, len(end_node))), np.empty((3, len(move_s)))
+def mean_jerks(acceleration: Array, end_node: NDArray[np.int64], move_s: Array) -> Array:
+    """Return the mean jerks (3, m) in the blocks of accelerations (3, n + 1) now and at the nodes."""
+    jerk = np.empty((3, len(move_s)))
     for axis in range(3):
-        for end in range(len(end_node)):
-            ends[axis, end] = acceleration[axis, end_node[end]]
         for move in range(len(move_s)):
-            jerk[axis, move] = (ends[axis, move + 1] - ends[axis, move]) / move_s[move]
-    return ends, jerk
+            change = acceleration[axis, end_node[move + 1]] - acceleration[axis, end_node[move]]
+            jerk[axis, move] = change / move_s[move]
+    return jerk
 
 
 @compiled_kernel
-def bound_minor(
-    frame: Array, major_jerk: Array, forced_v: Array, limits: PlainLimits, plain_grid: PlainGrid, minor: Problem
-) -> None:
-    """Write the bounds of the minor axis beside the major one's plan; see `envelope.minor_bounds`."""
-    most, grid = Limits(*limits), Grid(*plain_grid)
-    norms = (most.speed_m_s, most.acceleration_m_s2, most.jerk_m_s3)
-    minor_bounds(frame[:3], major_jerk, forced_v, norms, grid.nodes_s[1:], grid.move_s, grid.end_s, minor[1:])
-
-
-@compiled_kernel
-def plan_of(frame: Array, moves: tuple[Array, Array, Array], maps: Array, path: Array) -> float:
+def plan_of(frame: Array, level: Array, vertical: Array, maps: Array, path: Array) -> float:
     """Write a plan, and return its largest slack.
 
     Args:
         frame: as `Posed` has it.
-        moves: of each axis, the first m of (q,); slacks behind them.
+        level: (2 m + s,) the moves of the major axis and of the minor one, then slacks.
+        vertical: (m + s,) likewise of the vertical axis.
         maps: (3 + m, 3 k) from the state and the moves to p, v, a at k instants.
         path: (3, k, 3) where position, velocity and acceleration in W are written.
     """
     c, s = frame[4, 0], frame[4, 1]
-    sources, instants = maps.shape[0], path.shape[1]
+    moves, instants = maps.shape[0] - 3, path.shape[1]
     turned, excess = np.zeros((3, 3 * instants)), 0.0
     for axis in range(3):
-        for source in range(sources):
-            share = frame[source, axis] if source < 3 else moves[axis][source - 3]
+        jerk = vertical if axis == 2 else level[axis * moves :]
+        for source in range(3 + moves):
+            share = frame[source, axis] if source < 3 else jerk[source - 3]
             for i in range(3 * instants):  # innermost, since only sums that are apart are computed side by side
                 turned[axis, i] += maps[source, i] * share
-        for slack in range(sources - 3, len(moves[axis])):
-            excess = max(excess, moves[axis][slack])
+    for slack in range(2 * moves, len(level)):
+        excess = max(excess, level[slack])
+    for slack in range(moves, len(vertical)):
+        excess = max(excess, vertical[slack])
     for rate in range(3):
         is_place = 1.0 if rate == 0 else 0.0
         for instant in range(instants):

@@ -1,7 +1,8 @@
 """The one interface to quadratic programmes, and its two solvers: OSQP and DAQP.
 
-Minimise `x'Hx/2 + f'x` subject to `lower <= Ax <= upper`. Solving is a pure function of its arguments: no
-solver state survives a call, so the same problem gives the same bits in any order.
+Minimise `x'Hx/2 + f'x` subject to `lower <= Ax <= upper`. A solver is given it in `y = L'x`, `H = LL'`: DAQP then
+transforms nothing at each call, and the convergence of OSQP does not suffer from the conditioning of H. Solving is a
+pure function of its arguments: no solver state survives a call, so the same problem gives the same bits in any order.
 """
 
 import importlib
@@ -25,11 +26,10 @@ QpSolution = tuple[PlanStatus, Array | None, int]
 class QpSolver(Protocol):
     """What a programme asks of a solver."""
 
-    def call(self, H: Array, f: Array, A: Array, lower: Array, upper: Array) -> QpSolution:
-        """Return the answer to one problem.
+    def call(self, f: Array, A: Array, lower: Array, upper: Array) -> QpSolution:
+        """Return the answer to one problem: minimise `y'y / 2 + f'y`.
 
         Args:
-            H: (n, n) symmetric positive definite.
             f: (n,).
             A: (m, n).
             lower: (m,), -inf where there is no bound.
@@ -48,8 +48,8 @@ class Programme:
     """
 
     def __init__(self, solver: QpSolver, H: Array, A: Array) -> None:
-        self._solver, self._H, self._A = solver, H, A
-        self._is_sound = are_finite(H, A)
+        self._solver, self._back = solver, _inverse_root(H) if are_finite(H, A) else None
+        self._A = A if self._back is None else np.ascontiguousarray(A @ self._back)
 
     def blank(self) -> Problem:
         """Return new arrays to write a problem into."""
@@ -59,16 +59,26 @@ class Programme:
     def solve(self, problem: Problem) -> QpSolution:
         """Return the answer to one problem."""
         f, lower, upper = problem
-        fault = fault_of(f, lower, upper) if self._is_sound else _NOT_FINITE
+        if self._back is None:
+            return PlanStatus.FAILED, None, 0
+        fault = fault_of(f, lower, upper)
         if fault != _NO_FAULT:
             status = PlanStatus.INFEASIBLE if fault == _CROSSED else PlanStatus.FAILED
             return status, None, 0
-        status, x, iterations = self._solver.call(self._H, f, self._A, lower, upper)
-        if status is not PlanStatus.SOLVED or x is None:
+        status, y, iterations = self._solver.call(f @ self._back, self._A, lower, upper)
+        if status is not PlanStatus.SOLVED or y is None:
             return status, None, iterations
-        if not is_finite(x):
+        if not is_finite(y):
             return PlanStatus.FAILED, None, iterations
-        return status, x, iterations
+        return status, self._back @ y, iterations
+
+
+def _inverse_root(H: Array) -> Array | None:
+    """Return the inverse of L' (n, n), `H = LL'`; None for an H that is not positive definite."""
+    try:
+        return np.linalg.inv(np.linalg.cholesky(H).T)
+    except np.linalg.LinAlgError:
+        return None
 
 
 _NO_FAULT, _NOT_FINITE, _CROSSED = range(3)
@@ -140,19 +150,15 @@ class DaqpSolver:
     def __init__(self) -> None:
         self._daqp = cast("_Daqp", importlib.import_module("daqp"))
 
-    def call(self, H: Array, f: Array, A: Array, lower: Array, upper: Array) -> QpSolution:
+    def call(self, f: Array, A: Array, lower: Array, upper: Array) -> QpSolution:
         """Return the answer; the meaning of the arguments is the interface's."""
         sense = np.zeros(len(lower), dtype=np.int32)
-        x, _, flag, info = self._daqp.solve(H, f, A, upper, lower, sense)
+        x, _, flag, info = self._daqp.solve(np.eye(len(f)), f, A, upper, lower, sense)
         return DAQP_STATUS.get(flag, PlanStatus.FAILED), x, int(info["iterations"])
 
 
 class OsqpSolver:
-    """OSQP, an operator-splitting method (Stellato et al. 2020), with its polishing step.
-
-    It is given the problem in `y = L'x`, `H = LL'`, with rows of length 1: there its convergence does not suffer from
-    the conditioning of H.
-    """
+    """OSQP, an operator-splitting method (Stellato et al. 2020), with its polishing step and rows of length 1."""
 
     TOLERANCE = 1e-6
     ITERATIONS_MAX = 20000
@@ -161,19 +167,14 @@ class OsqpSolver:
         self._osqp: ModuleType = importlib.import_module("osqp")
         self._sparse: ModuleType = importlib.import_module("scipy.sparse")
 
-    def call(self, H: Array, f: Array, A: Array, lower: Array, upper: Array) -> QpSolution:
+    def call(self, f: Array, A: Array, lower: Array, upper: Array) -> QpSolution:
         """Return the answer; the meaning of the arguments is the interface's."""
-        try:
-            L = np.linalg.cholesky(H)
-        except np.linalg.LinAlgError:
-            return PlanStatus.FAILED, None, 0
-        rows = np.linalg.solve(L, A.T).T
-        length = np.maximum(np.linalg.norm(rows, axis=1), 1e-12)
+        length = np.maximum(np.linalg.norm(A, axis=1), 1e-12)
         problem = self._osqp.OSQP()
         problem.setup(
             self._sparse.eye(len(f), format="csc"),
-            np.linalg.solve(L, f),
-            self._sparse.csc_matrix(rows / length[:, None]),
+            f,
+            self._sparse.csc_matrix(A / length[:, None]),
             lower / length,
             upper / length,
             verbose=False,
@@ -185,8 +186,7 @@ class OsqpSolver:
         )
         result = problem.solve(raise_error=False)
         status = OSQP_STATUS.get(self._osqp.SolverStatus(result.info.status_val).name, PlanStatus.FAILED)
-        x = np.linalg.solve(L.T, result.x) if status is PlanStatus.SOLVED else None
-        return status, x, int(result.info.iter)
+        return status, result.x if status is PlanStatus.SOLVED else None, int(result.info.iter)
 
 
 def make_solver(kind: SolverKind) -> QpSolver:

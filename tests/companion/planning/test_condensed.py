@@ -4,7 +4,7 @@ from scipy.integrate import trapezoid
 
 from companion.config.planning import MpcConfig
 from companion.core.data import Array
-from companion.planning.axis_qp import AxisModel, make_axis_model, make_axis_problem, slopes_of, terminal_cost
+from companion.planning.axis_qp import AxisModel, make_axis_cost, make_axis_model, slopes_of, terminal_cost
 
 MOVES_S: Array = np.array([0.02, 0.05, 0.13, 0.37, 0.61])
 
@@ -44,7 +44,7 @@ def test_the_nodes_hold_all_ends_of_blocks_and_no_wide_gap() -> None:
 def test_the_programme_costs_what_a_rollout_costs(axis: int) -> None:
     config = MpcConfig()
     model = make_axis_model(np.array(config.moves_s), config.node_spacing_max_s)
-    problem = make_axis_problem(model, config, floor_lead_s=None)
+    constant = make_axis_cost(model, config)
     rng = np.random.default_rng(5)
     u = 5.0 * rng.normal(size=len(config.moves_s))
     states, references, jerks = (rng.normal(size=(3, 3, *rest)) for rest in ((), (len(model.node_s),), (len(u),)))
@@ -58,9 +58,8 @@ def test_the_programme_costs_what_a_rollout_costs(axis: int) -> None:
         effort = config.jerk_weight * ((moves - jerk) ** 2) @ model.move_s
         return float(0.5 * (integral + effort + error[-1] @ terminal_cost(config) @ error[-1]))
 
-    z = np.append(u, [0.0, 0.0])
-    slopes = slopes_of(problem.weights, states, references, jerks[0])[axis]
-    quadratic = 0.5 * z @ problem.H @ z + slopes @ u
+    slopes = slopes_of(constant.weights, states, references, jerks[0])[axis]
+    quadratic = 0.5 * u @ constant.H @ u + slopes @ u
     assert quadratic == pytest.approx(cost(u) - cost(np.zeros_like(u)), rel=1e-9)
 
 

@@ -4,7 +4,8 @@ import pytest
 from companion.config.planning import MpcConfig
 from companion.core.data import Array, FlightLimits
 from companion.planning.mpc import Mpc
-from tests.companion.planning.cases import LIMITS, circle, fly, norm, state_at, straight
+from link.records import replace
+from tests.companion.planning.cases import LIMITS, Motion, circle, fly, norm, state_at, state_on, straight
 
 MPC = Mpc(MpcConfig())
 NORM_TOLERANCE = 1.02
@@ -94,3 +95,33 @@ def test_a_start_that_must_break_the_floor_reports_the_excess() -> None:
     state = state_at((0.0, 0.0, 2.0), (0.0, 0.0, -4.0))
     flight = fly(MPC, straight((0.0, 0.0, -3.0), (0.0, 0.0, 0.0)), state, 1.0, floor_m=1.0)
     assert max(result.limit_excess for result in flight.results) > 0.0
+
+
+def bend(speed_m_s: float, radius_m: float, angle_rad: float, *, begins_s: float) -> Motion:
+    """A straight, a bend to the left, and a straight."""
+    rate, first = speed_m_s / radius_m, np.array([0.0, 0.0, 2.0])
+
+    def at(t_s: Array) -> tuple[Array, Array, Array]:
+        turned = np.clip(rate * (t_s - begins_s), 0.0, angle_rad)
+        before, after = np.minimum(t_s, begins_s), np.maximum(t_s - begins_s - angle_rad / rate, 0.0)
+        c, s, o = np.cos(turned), np.sin(turned), np.zeros_like(t_s)
+        place = np.stack((speed_m_s * before + radius_m * s, radius_m * (1.0 - c), o), axis=1)
+        ahead, turns = np.stack((c, s, o), axis=1), (turned > 0.0) & (turned < angle_rad)
+        across = speed_m_s * rate * turns[:, None] * np.stack((-s, c, o), axis=1)
+        return first + place + speed_m_s * after[:, None] * ahead, speed_m_s * ahead, across
+
+    return at
+
+
+@pytest.mark.parametrize(("speed_m_s", "radius_m"), [(10.2, 17.0), (9.4, 15.0), (10.5, 21.0)])
+def test_a_bend_that_needs_more_than_the_limit_is_cut_by_no_more_than_its_excess(
+    speed_m_s: float, radius_m: float
+) -> None:
+    """What lacks acceleration by d over the time T of the bend sags by d T^2 / 8 at most, from end to end."""
+    limits = replace(LIMITS, acceleration_max_m_s2=5.0, jerk_max_m_s3=60.0)
+    motion, angle_rad = bend(speed_m_s, radius_m, 0.5 * np.pi, begins_s=3.5), 0.5 * np.pi
+    flight = fly(MPC, motion, state_on(motion), 10.0, limits)
+    excess, lasts_s = speed_m_s**2 / radius_m - 5.0, angle_rad * radius_m / speed_m_s
+    assert excess > 0.2
+    assert norm(flight.error).max() < excess * lasts_s**2 / 8.0 + 0.1
+    assert norm(flight.error)[-1] < 0.05
