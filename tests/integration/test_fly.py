@@ -18,14 +18,19 @@ from tests.integration.programs import Programs
 
 pytestmark = pytest.mark.wire
 
+FAST = {"ardupilot": {"WPNAV_SPEED": 1600, "WPNAV_ACCEL": 500, "PSC_JERK_XY": 10}, "px4": {}}
+"""Parameters with which a station is reached within its settling time; `companion check --launch` advises them."""
+
 
 @contextmanager
 def stand_in(firmware: str) -> Iterator[tuple[str, str]]:
     """A simulated autopilot on the ground, and the devices of the companion and of an observer."""
     ports = free_udp_port(), free_udp_port()
     links = [word for port in ports for word in ("--mavlink", f"udpout:127.0.0.1:{port}")]
+    changes = [word for name, value in FAST[firmware].items() for word in ("--set", f"parameters.{name}={value}")]
     with Programs() as programs:
-        programs.start("sim-autopilot", *links, "--firmware", firmware, "--instant", "-e", free_tcp_endpoint())
+        flags = ("--firmware", firmware, "--instant", "-e", free_tcp_endpoint())
+        programs.start("sim-autopilot", *links, *flags, *changes)
         companion, observer = (f"udpin:127.0.0.1:{port}" for port in ports)
         yield companion, observer
 
