@@ -174,10 +174,14 @@ class ReceiversConfig(StrictModel):
     # A drone over a vehicle without corrections has none either: its own place wanders by so much of the same
     # variance in a second. Benchmark: 0.5 m, of which 0.36 m are new after 10 s.
     own_walk_share: NotNegative = 0.13
-    # Its height wanders over any vehicle, with a rate that lasts. With PX4 it moved by 0.09 m in 1 s, 0.32 m in 4 s and
-    # 0.55 m in 8 s (docs/real_autopilots.md), with corrections by next to nothing: root mean square of the two.
-    own_height_rate_std_m_s: NotNegative = 0.06
-    own_height_time_s: Positive = 10.0  # for which such a rate lasts
+    # Its height wanders over any vehicle, with a rate that lasts a while. With PX4 it moved by 0.09 m in 1 s, 0.27 m in
+    # 4 s and 0.41 m in 8 s, a rate of 0.1 m/s (docs/real_autopilots.md); with corrections by next to nothing: root mean
+    # square of the two.
+    own_height_rate_std_m_s: NotNegative = 0.07
+    # For which such a rate lasts. What it was in one second tells next to nothing of the height 8 s later: that comes
+    # back to where it was.
+    own_height_rate_time_s: Positive = 2.0
+    own_height_time_s: Positive = 10.0  # after which a height that nothing tells is as wrong as it ever gets
     # Of the clock that dates such coarse fixes, against the drone's; benchmark: up to 0.1 s. Receivers with corrections
     # date their fixes themselves, to microseconds.
     clock_std_s: NotNegative = 0.03

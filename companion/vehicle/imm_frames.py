@@ -135,5 +135,5 @@ def _own_rate_m2_s3(state: ImmState, receivers: ReceiversConfig) -> float:
 
     Its height does not wander for ever: long after anything told it, it is as wrong as it ever gets.
     """
-    time_s = receivers.own_height_time_s
-    return 2.0 * receivers.own_height_rate_std_m_s**2 / time_s * math.exp(-state.height_age_s / time_s)
+    left = math.exp(-state.height_age_s / receivers.own_height_time_s)
+    return 2.0 * receivers.own_height_rate_std_m_s**2 / receivers.own_height_rate_time_s * left

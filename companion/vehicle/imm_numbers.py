@@ -118,7 +118,7 @@ def numbers_of(config: ImmConfig, deck: Deck) -> Numbers:
                 config.road.gravity_leak_time_s,
                 *level,
                 *level,
-                config.receivers.own_height_time_s,
+                config.receivers.own_height_rate_time_s,
             ]
         ),
         begins_after_s=np.array([mode.begins_after_s for mode in modes]),

@@ -48,7 +48,10 @@ SCENARIOS = {
         "scenarios attack --mavlink udpout:127.0.0.1:14540 --stranger tcp/127.0.0.1:7447",
     ),
     "faults": ("scenarios faults --workers 1 --firmware px4",),
-    "fly": ("scenarios fly straight_5 --ship 5     # with ArduPilot's own simulation, started before",),
+    "fly": (
+        "scenarios fly straight_5 --ship 5     # with ArduPilot's own simulation, started before",
+        "scenarios fly straight_5 --sortie     # from a pad on the ground",
+    ),
     "identify": (
         "scenarios identify --mavlink udpin:127.0.0.1:14540     # with PX4's or ArduPilot's own simulation",
         "scenarios identify --firmware px4 --parameter MPC_XY_P=1.2 --json",

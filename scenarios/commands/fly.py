@@ -29,6 +29,9 @@ def fly_command(
         float | None,
         typer.Option("--ship", min=0.1, metavar="M_S", help="Land on ArduPilot's simulated ship at this speed."),
     ] = None,
+    sortie: Annotated[
+        bool, typer.Option("--sortie", help="Launch from the vehicle, follow at three stations, come home and land.")
+    ] = False,
     seed: Annotated[
         int | None, typer.Option("--seed", min=0, help="Of the vehicle's sensors [default: 1, or the world's own].")
     ] = None,
@@ -37,14 +40,16 @@ def fly_command(
     out: RunsOption = Path("runs"),
     as_json: JsonOption = False,
 ) -> int:
-    """Land with PX4's or ArduPilot's own simulation, which runs already; exit code 1 when it does not land.
+    """Fly with PX4's or ArduPilot's own simulation, which runs already; exit code 1 when it does not land.
 
-    The vehicle drives by the place where the simulated drone stands, its pad at the height of the ground.
+    The vehicle drives by the place where the simulated drone stands, its pad at the height of the ground. In a sortie
+    the drone launches from it; exit code 1 also when it touches anything between lift-off and landing.
     """
     from scenarios.catalogue.catalogue import load_changed_scenario
     from scenarios.catalogue.world_names import run_seed
     from scenarios.commands.run_lines import Reporter
-    from scenarios.firmware.fly import FlyOptions, fly
+    from scenarios.firmware.fly import fly
+    from scenarios.firmware.options import FlyOptions
     from scenarios.recordings.run_folder import run_folder
 
     scenario = load_changed_scenario(name, changes)
@@ -55,8 +60,10 @@ def fly_command(
         ship_speed_m_s=ship,
         seed=run_seed(name, seed),
         folder=folder,
+        sortie=sortie,
         record=not no_record,
     )
     with Reporter(scenario, folder, as_json=as_json) as reporter:
         outcome = fly(scenario, options, reporter.progress)
-    return reporter.conclude(outcome)
+    code = reporter.conclude(outcome)
+    return 1 if sortie and outcome.result["sortie"]["contacts"] else code

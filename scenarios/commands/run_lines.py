@@ -52,6 +52,7 @@ def _why(one: Mapping[str, Any]) -> str:
     return f"{one['reason']} ({one['reason_code']})"
 
 
+_OF_LANDING = frozenset({"ended", "reason", "tier", "tier_reason"})
 _PLAIN_EVERY_S = 2.0  # simulated, between lines that are not overwritten
 
 
@@ -145,4 +146,15 @@ def _score_lines(result: dict[str, Any], timing: dict[str, Any]) -> list[str]:
         if result.get(key) is not None:
             lines.append(f"  {label:46}{result[key] * scale:8.3f} {unit}")
     lines.append(f"  {'real-time factor':46}{timing['real_time_factor']:8.3f}")
+    lines += sortie_lines(result["sortie"]) if "sortie" in result else ()
     return [*lines, *approach_lines(result)]
+
+
+def sortie_lines(sortie: Mapping[str, Any]) -> Iterator[str]:
+    """Yield a line for each figure of a sortie, which is no landing's.
+
+    Args:
+        sortie: as `result.json` has it.
+    """
+    yield "sortie"
+    yield from (f"  {name:46}{value}" for name, value in sortie.items() if name not in _OF_LANDING)

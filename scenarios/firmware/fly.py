@@ -1,81 +1,62 @@
-"""The wire loop of `scenarios fly`: a vehicle beside a firmware's own simulation, the companion, and the score."""
+"""`scenarios fly`: a firmware's own simulation, a vehicle and the companion; what is flown, and the score."""
 
 import math
 import time
 from contextlib import closing
-from dataclasses import dataclass
-from pathlib import Path
+from typing import Any
 
-from companion.situation.phases import Phase
 from link.errors import UserError
 from link.frames.geodesy import Datum
-from link.payloads import json_messages
 from link.program.cli import Patience
 from link.program.toml_config import dump_toml
 from link.records import replace
 from link.transports.opening import Transport, open_transport
-from link.zenoh.keys import Keys, Publication
-from link.zenoh.session import ZenohOptions, ZenohSession, open_session
+from link.zenoh.keys import Keys
+from link.zenoh.session import ZenohOptions, open_session
 from scenarios.config import Scenario
-from scenarios.firmware.ship import PARAMETERS, ship_at, ship_at_rest
+from scenarios.firmware.flight import FirmwareFlight, listen
+from scenarios.firmware.options import FlyOptions
+from scenarios.firmware.sortie import FirmwareSortie, departing_from_under, start_of
 from scenarios.firmware.truth import DRAG_PER_MASS_HZ, NAMES
 from scenarios.firmware.watch import FirmwareWatch
 from scenarios.processes.programs import MODULES, ProcessGroup, Program, free_tcp_endpoint
-from scenarios.recordings.recording import EndWatch, Recording
+from scenarios.recordings.recording import Recording
 from scenarios.recordings.result import result_table, write_json, write_text
 from scenarios.recordings.run_folder import Progress, RunOutcome
 from scenarios.recordings.truth_file import TruthFile
-from scenarios.recordings.watcher import Watcher
-from scenarios.scoring.touchdown import rules_of
-from scenarios.simulation.vehicle_node import STEP_PERIOD_NS, VehicleNode, datum_of
+from scenarios.scoring.touchdown import ScoreRules, rules_of
+from scenarios.sortie.score import landing_from_ns, score_sortie
+from scenarios.sortie.script import SortieOperator, stations_of
 from sim_autopilot.runtime.config import DatumConfig
 
-_WAIT_S = 0.004  # for bytes
 _READY_S = 120.0  # of wall time for the autopilot's clock, receiver and truth
-_PROGRESS_S = 0.2
 # The ground is the roof, with the pad on it.
 _BODY = {"roof_height_m": 0.0, "antenna_flu_m": (0.0, 0.0, 0.0), "length_m": 400.0, "width_m": 400.0}
 # The simulations tell the place of the feet, and PX4's own height wanders by half a metre.
 _RANGE_FINDER = {"height_m": 0.0, "off_max_m": 1.0}
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FlyOptions:
-    """How a flight is made.
-
-    Attributes:
-        mavlink: the companion's device.
-        watch: device of a second link, for the simulation's truth.
-        ship_speed_m_s: of ArduPilot's simulated ship, which then is the vehicle; None is the scenario's vehicle.
-        seed: of the vehicle's sensors.
-        folder: to be made for the flight.
-        record: write what goes in and out of the companion, and the truth, as MCAP.
-    """
-
-    mavlink: str
-    watch: str
-    ship_speed_m_s: float | None
-    seed: int
-    folder: Path
-    record: bool = False
-
-
 def fly(scenario: Scenario, options: FlyOptions, progress: Progress) -> RunOutcome:
     """Fly a scenario's vehicle against an autopilot that runs already, and score it on the simulation's truth.
 
     Raises:
-        UserError: the autopilot tells no truth, or the companion ended by itself.
+        UserError: the autopilot tells no truth, the vehicle of a sortie stands, or the companion ended by itself.
     """
     endpoint, keys = free_tcp_endpoint(), Keys()
+    scenario = departing_from_under(scenario, options.seed) if options.sortie else scenario
+    operator = SortieOperator(stations_of(_flat(scenario))) if options.sortie else None
     with open_transport(options.watch) as transport, open_session(ZenohOptions(listen=(endpoint,))) as zenoh:
         watch = FirmwareWatch()
         with Patience("scenarios", f"waiting up to {_READY_S:g} s for the simulation's truth on {options.watch}"):
-            datum = _datum(watch, transport)
+            datum = _wait_for_truth(watch, transport)
+        if options.sortie and options.ship_speed_m_s is None:
+            datum = watch.let_it_stand_at(start_of(scenario, options.seed))
         firmware = NAMES.get(watch.session.autopilot or 0, scenario.firmware)
         placed = _place(scenario, datum).model_copy(update={"firmware": firmware})
         write_text(options.folder / "scenario.toml", dump_toml(placed))
         write_text(options.folder / "companion.toml", dump_toml(placed.system.companion))
-        flight = _Flight(placed, options, watch, keys, zenoh)
+        flown = (placed, options, watch, keys, zenoh)
+        flight = FirmwareFlight(*flown) if operator is None else FirmwareSortie(*flown, operator=operator)
         with ProcessGroup([_companion(options, endpoint)], options.folder) as processes:
             ended = flight.run(transport, processes, progress)
         if options.record:
@@ -84,15 +65,29 @@ def fly(scenario: Scenario, options: FlyOptions, progress: Progress) -> RunOutco
     drag_hz = DRAG_PER_MASS_HZ.get(watch.session.autopilot or 0, 0.0)
     carries = options.ship_speed_m_s is not None
     rules = replace(rules_of(placed), mass_kg=1.0, drag_n_s_m=drag_hz, report_rule=False, carries=carries)
-    result = result_table(placed, options.seed, flight.recording, ended, rules)
+    if operator is None:
+        result = result_table(placed, options.seed, flight.recording, ended, rules)
+    else:
+        result = _sortie_result(placed, options.seed, flight.recording, rules, ended=ended, operator=operator)
     write_json(options.folder / "result.json", result)
     return RunOutcome(result=result, timing={"real_time_factor": 1.0})
+
+
+def _sortie_result(
+    scenario: Scenario, seed: int, recording: Recording, rules: ScoreRules, *, ended: str, operator: SortieOperator
+) -> dict[str, Any]:
+    """Return the result of the way home and its landing, and what the whole sortie was worth."""
+    from_ns = landing_from_ns(operator)
+    home = result_table(scenario, seed, recording.since(from_ns), ended, rules, started_ns=from_ns)
+    home["time_to_contact_s"] = None  # a sortie's is its `return_s`
+    return home | {"sortie": score_sortie(recording, operator, rules, ended).to_json()}
 
 
 def _companion(options: FlyOptions, endpoint: str) -> Program:
     arguments = (
         *("--config", str(options.folder / "companion.toml"), "--mavlink", options.mavlink, "-e", endpoint),
-        *("--start", "--tlog", str(options.folder / "flight.tlog"), "--timeout", "0"),
+        *(() if options.sortie else ("--start",)),
+        *("--tlog", str(options.folder / "flight.tlog"), "--timeout", "0"),
         *(("--record", str(options.folder)) if options.record else ()),
     )
     return Program(name="companion", module=MODULES["companion"], arguments=arguments)
@@ -118,93 +113,16 @@ def _place(scenario: Scenario, datum: Datum) -> Scenario:
     return scenario.model_copy(update={"vehicle": vehicle, "system": system}).with_run(datum=place)
 
 
-def _datum(watch: FirmwareWatch, transport: Transport) -> Datum:
-    """Wait until the simulation has told where the drone stands."""
+def _flat(scenario: Scenario) -> Scenario:
+    """Return the scenario with its vehicle's roof at the height of the ground."""
+    return scenario.model_copy(update={"vehicle": scenario.vehicle.model_copy(update={"roof_height_m": 0.0})})
+
+
+def _wait_for_truth(watch: FirmwareWatch, transport: Transport) -> Datum:
+    """Wait until the simulation has told where the drone stands, and return W's origin."""
     until_s = time.monotonic() + _READY_S
     while watch.datum is None or watch.drone is None:
-        _listen(watch, transport)
+        listen(watch, transport)
         if time.monotonic() > until_s:
             raise UserError(f"no truth of the drone within {_READY_S:g} s: check --watch, and that it is a simulation")
     return watch.datum
-
-
-def _listen(watch: FirmwareWatch, transport: Transport) -> int:
-    """Take what comes within a few milliseconds; return the local time."""
-    received = transport.receive_by_peer(_WAIT_S)
-    local_ns = time.time_ns()
-    for _, data in received:
-        watch.receive(data, local_ns, is_datagram=transport.is_datagram)
-    watch.session.poll(local_ns)
-    for frame in watch.session.take_output():
-        transport.send(frame)
-    return local_ns
-
-
-class _Flight:
-    def __init__(
-        self, scenario: Scenario, options: FlyOptions, watch: FirmwareWatch, keys: Keys, zenoh: ZenohSession
-    ) -> None:
-        self.recording = Recording()
-        self._scenario = scenario
-        self._options = options
-        self._watch = watch
-        self._zenoh = zenoh
-        self._vehicle = VehicleNode(scenario, options.seed, keys)
-        self._watcher = Watcher(zenoh, keys, self.recording)
-        self._datum = datum_of(scenario.run.datum)
-        self._stepped_ns = 0
-        self._ship_lies = self._ship_sails = False
-        pad = json_messages.encode(self._vehicle.pad)
-        zenoh.serve(keys.pad, lambda _: pad)
-        zenoh.declare_alive(keys.alive)
-
-    def run(self, transport: Transport, processes: ProcessGroup, progress: Progress) -> str:
-        """Return why the flight ended."""
-        end, shown_s = EndWatch(self._scenario.run.time_limit_s), 0.0
-        while (reason := end.reason(self.recording)) is None:
-            local_ns = _listen(self._watch, transport)
-            processes.check()
-            for truth in self._watch.take_truths():
-                self.recording.add(truth)
-            self._step(local_ns)
-            self._watcher.take()
-            if end.must_break_off(self.recording):
-                self._watcher.break_off()
-            if time.monotonic() - shown_s >= _PROGRESS_S:
-                shown_s = time.monotonic()
-                progress(self.recording, 1.0)
-        return reason
-
-    def _step(self, local_ns: int) -> None:
-        t_ns = self._watch.utc_ns(local_ns)
-        if t_ns is None or t_ns - self._stepped_ns < STEP_PERIOD_NS:
-            return
-        self._stepped_ns = t_ns
-        if self._options.ship_speed_m_s is None:
-            publications = self._vehicle.step(t_ns, self._watch.drone)
-        else:
-            self._set_sail(self._options.ship_speed_m_s)
-            publications = self._on_deck(t_ns, self._options.ship_speed_m_s)
-        for publication in publications:
-            self._zenoh.publish(publication.key, publication.payload, publication.encoding)
-
-    def _set_sail(self, speed_m_s: float) -> None:
-        """Let the ship begin once the drone waits for it; first it only reports, lest it leap to its first report."""
-        status = self.recording.status
-        waits = status is not None and status.phase == Phase.WAITING.value
-        if waits and not self._ship_lies:
-            self._ship_lies = True
-            for name, value in (PARAMETERS | {"SIM_SHIP_SPEED": 0.0, "SIM_SHIP_ENABLE": 1.0}).items():
-                self._watch.set_parameter(name, value)
-        elif self._watch.ship is not None and not self._ship_sails:
-            self._ship_sails = True
-            self._watch.set_parameter("SIM_SHIP_SPEED", speed_m_s)
-
-    def _on_deck(self, t_ns: int, ordered_m_s: float) -> list[Publication]:
-        report, clock = self._watch.ship, self._watch.session.clock
-        reported_ns = None if report is None else clock.boot_to_utc_ns(report.boot_ns)
-        if report is None or reported_ns is None:
-            return self._vehicle.published(ship_at_rest(t_ns), None)
-        radius_m = 0.5 * PARAMETERS["SIM_SHIP_PSIZE"]
-        ship = ship_at(report, reported_ns, t_ns, self._datum, turn_radius_m=radius_m, ordered_m_s=ordered_m_s)
-        return self._vehicle.published(ship, self._watch.drone)

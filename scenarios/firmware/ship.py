@@ -14,8 +14,12 @@ from link.mavlink.dialect import Message
 from scenarios.simulation.vehicle import VehicleState
 
 SHIP_SYSTEM_ID = 17  # SIM_SHIP_SYSID
-PARAMETERS = {"SIM_SHIP_PSIZE": 1000.0, "SIM_SHIP_OFS_X": -40.0, "SIM_SHIP_OFS_Y": -1.5}
-"""It starts 40 m behind the drone, to the north on a circle of 500 m, which leads by the drone."""
+PATH_RADIUS_M = 500.0
+"""Of the circle that it sails, first to the north."""
+ASTERN_M = (-1.5, -40.0)
+"""East and north of the drone the deck's middle begins here for a landing, on a circle that leads by the drone."""
+UNDER_DRONE_M = (0.0, 0.0)
+"""For a sortie."""
 
 SPEEDS_UP_M_S2 = 3.0  # ArduPilot, libraries/SITL/SIM_Ship.cpp
 _DEGREES_1E7 = math.radians(1e-7)
@@ -45,12 +49,24 @@ def ship_report(message: Message) -> ShipReport | None:
     )
 
 
-def ship_at_rest(t_ns: int) -> VehicleState:
+def ship_parameters(begins_m: tuple[float, float]) -> dict[str, float]:
+    """Return the parameters of a ship that lies there, east and north of the drone, and reports."""
+    east_m, north_m = begins_m
+    return {
+        "SIM_SHIP_PSIZE": 2.0 * PATH_RADIUS_M,
+        "SIM_SHIP_OFS_X": north_m,
+        "SIM_SHIP_OFS_Y": east_m,
+        "SIM_SHIP_SPEED": 0.0,
+        "SIM_SHIP_ENABLE": 1.0,
+    }
+
+
+def ship_at_rest(t_ns: int, begins_m: tuple[float, float]) -> VehicleState:
     """Return the ship at `t_ns` before it sails: where it begins, bow to the north; no vehicle leaps there later."""
     yaw_rad = 0.5 * math.pi
     return VehicleState(
         t_ns=t_ns,
-        position_enu_m=(PARAMETERS["SIM_SHIP_OFS_Y"], PARAMETERS["SIM_SHIP_OFS_X"], 0.0),
+        position_enu_m=(*begins_m, 0.0),
         velocity_enu_m_s=(0.0, 0.0, 0.0),
         acceleration_enu_m_s2=(0.0, 0.0, 0.0),
         orientation_wxyz=quaternion_from_yaw(yaw_rad),

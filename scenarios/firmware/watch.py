@@ -1,12 +1,12 @@
 """A second link to a firmware's own simulation: its clock, its truth, and its ship. Without I/O."""
 
 from link.errors import UserError
-from link.frames.geodesy import Datum
+from link.frames.geodesy import Datum, geodetic_from_enu
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import Message, mavlink
 from link.mavlink.events import LinkFound, MessageReceived
 from link.mavlink.session import MavlinkSession
-from link.messages import BodyTruth, RotorTruth
+from link.messages import BodyTruth, RotorTruth, Vector3
 from link.records import replace
 from scenarios.firmware.ship import ShipReport, ship_report
 from scenarios.firmware.truth import (
@@ -52,6 +52,20 @@ class FirmwareWatch:
         if self._datum_msl is None or self._geoid_height_m is None:
             return None
         return replace(self._datum_msl, altitude_m=self._datum_msl.altitude_m + self._geoid_height_m)
+
+    def let_it_stand_at(self, position_enu_m: Vector3) -> Datum:
+        """Move W so that the place where the drone stood first has these coordinates, and return its origin.
+
+        Raises:
+            ValueError: it has not been seen.
+        """
+        if self._datum_msl is None or self._geoid_height_m is None:
+            raise ValueError("no drone is seen yet")
+        east_m, north_m, up_m = position_enu_m
+        latitude_rad, longitude_rad, altitude_m = geodetic_from_enu(self._datum_msl, (-east_m, -north_m, -up_m))
+        self._datum_msl = Datum(latitude_rad=latitude_rad, longitude_rad=longitude_rad, altitude_m=altitude_m)
+        self.drone, self.truths = None, []
+        return replace(self._datum_msl, altitude_m=altitude_m + self._geoid_height_m)
 
     def utc_ns(self, local_ns: int) -> int | None:
         """Return the autopilot's UTC, None until it is known."""

@@ -59,6 +59,15 @@ class Recording:
         """The newest one."""
         return self.statuses[-1] if self.statuses else None
 
+    def since(self, t_ns: int) -> "Recording":
+        """Return what is recorded from `t_ns` on; without the errors of the estimate, which bear no time."""
+        return Recording(
+            drone=[one for one in self.drone if one.t_ns >= t_ns],
+            vehicle=[one for one in self.vehicle if one.t_ns >= t_ns],
+            rotors=[one for one in self.rotors if one.t_ns >= t_ns],
+            statuses=[one for one in self.statuses if one.stamp_ns >= t_ns],
+        )
+
     def status_at_end(self, ended: str) -> LandingStatus | None:
         """Return the status that says why a run ended: at its time limit, what was waited for before it was called off.
 

@@ -30,16 +30,32 @@ def score_run(scenario: Scenario, seed: Seed, recording: Recording, rules: Score
 
 
 def result_table(
-    scenario: Scenario, seed: int, recording: Recording, ended: str, rules: ScoreRules | None = None
+    scenario: Scenario,
+    seed: int,
+    recording: Recording,
+    ended: str,
+    rules: ScoreRules | None = None,
+    *,
+    started_ns: int | None = None,
 ) -> dict[str, Any]:
-    """Return the result as a table of plain values, by the scenario's rules unless others are given."""
+    """Return the result as a table of plain values.
+
+    Args:
+        scenario: that was flown.
+        seed: likewise.
+        recording: of the flight.
+        ended: why it did.
+        rules: the scenario's unless others are given.
+        started_ns: when the landing was called for; None where the vehicle's passing of the waiting drone starts it.
+    """
     rules = rules or rules_of(scenario, wind_mean_enu_m_s=mean_wind_enu_m_s(scenario, seed))
     log = truth_log(recording.drone, recording.vehicle, recording.rotors)
     approaches = approaches_of(recording.statuses, log, rules.box.roof_height_m)
-    scored = score_log(log, rules)
+    scored = score_log(log, rules, started_ns=started_ns)
     table = scored.to_json()
     table |= accuracy_table(recording.estimate_errors, recording.nis)
-    table["pass_to_contact_s"] = _pass_to_contact_s(log, approaches, scored.touchdown)
+    waits = started_ns is None
+    table["pass_to_contact_s"] = _pass_to_contact_s(log, approaches, scored.touchdown) if waits else None
     instant_ns = _decisive_ns(log, scored, rules)
     table |= vehicle_circumstances(log, instant_ns)
     start_ns = recording.drone[0].t_ns

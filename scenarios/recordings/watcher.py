@@ -2,9 +2,10 @@
 
 from typing import TypeVar
 
-from link.messages import BodyTruth, Command, LandingStatus, Order, RotorTruth
+from link.messages import BodyTruth, Command, CommandReply, LandingStatus, Order, RotorTruth
 from link.payloads import cdr, json_messages
 from link.payloads.checks import PayloadError
+from link.zenoh.inbox import Inbox
 from link.zenoh.keys import Keys
 from link.zenoh.session import ZenohSession
 from scenarios.recordings.recording import Recording
@@ -36,6 +37,7 @@ class Watcher:
         self._vehicle = zenoh.subscribe(keys.vehicle_truth, capacity=_CAPACITY)
         self._rotors = zenoh.subscribe(keys.drone_rotors, capacity=_CAPACITY)
         self._status = zenoh.subscribe(keys.landing_status)
+        self._answers: list[Inbox] = []
 
     def take(self) -> None:
         """Take what has come."""
@@ -51,6 +53,21 @@ class Watcher:
     def break_off(self) -> None:
         """Call the landing off, as an operator would; what becomes of it shows in the status."""
         self._zenoh.query(self._command_key, json_messages.encode(Order(command=Command.ABORT)), _ANSWER_S)
+
+    def command(self, order: Order) -> None:
+        """Give the companion an order; `take_replies` has its answer later."""
+        self._answers.append(self._zenoh.ask(self._command_key, json_messages.encode(order), _ANSWER_S))
+
+    def take_replies(self) -> list[CommandReply]:
+        """Return what has been answered to orders since the last call."""
+        replies = []
+        for inbox in self._answers:
+            for sample in inbox.take():
+                try:
+                    replies.append(json_messages.decode(CommandReply, sample.payload))
+                except PayloadError:
+                    self.bad_payloads += 1
+        return replies
 
     def _add(self, kind: type[T], payload: bytes, *, is_drone: bool = True) -> None:
         try:

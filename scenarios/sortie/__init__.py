@@ -1,1 +1,1 @@
-"""Whole sorties in lockstep: launch from a driving deck, stations, out of sight, home; and what they were worth."""
+"""Whole sorties: launch from the deck, stations, out of sight, home; what is ordered, and what they were worth."""

@@ -8,6 +8,8 @@ from scenarios.catalogue.completion import place_drone
 from scenarios.catalogue.firmware_option import with_firmware
 from scenarios.config import Scenario
 from scenarios.scoring.score import Tier
+from scenarios.scoring.touchdown import rules_of
+from scenarios.simulation.drone import mean_wind_enu_m_s
 from scenarios.sortie.flight import SortieFlight
 from scenarios.sortie.score import SortieScore, score_sortie
 from scenarios.tracks.config import MovingTrack
@@ -24,13 +26,23 @@ def sortie_scenario(cell: str, seed: int, firmware: str) -> Scenario:
     """
     is_world = cell == "world" or f"world:{cell}" in slices() or cell in slices()
     name = f"{cell if cell.startswith('world') else f'world:{cell}'}@{seed}" if is_world else cell
-    scenario = load_scenario(with_firmware(name, firmware))
+    scenario = on_long_road(load_scenario(with_firmware(name, firmware)))
+    return place_drone(scenario.with_run(place="deck"))
+
+
+def on_long_road(scenario: Scenario) -> Scenario:
+    """Return `scenario` with a road that is long enough for a sortie.
+
+    Raises:
+        UserError: its vehicle stands.
+    """
     track = scenario.track
     if track.kind == "static":
-        raise UserError(f"{cell}: its vehicle stands; a sortie begins on one that drives: take straight_10 or urban")
+        name = scenario.name
+        raise UserError(f"{name}: its vehicle stands; a sortie begins on one that drives: take straight_10 or urban")
     if isinstance(track, MovingTrack):
         track = track.model_copy(update={"road_s": max(track.road_s, _ROAD_S)})
-    return place_drone(scenario.model_copy(update={"track": track}).with_run(place="deck"))
+    return scenario.model_copy(update={"track": track})
 
 
 class SortieTask(Struct, frozen=True, kw_only=True):
@@ -52,7 +64,8 @@ def fly_sortie(task: SortieTask) -> FlownSortie:
     """Return what a sortie was worth."""
     flight = SortieFlight(sortie_scenario(task.cell, task.seed, task.firmware), task.seed)
     ended = flight.fly()
-    return FlownSortie(task=task, score=score_sortie(flight, ended))
+    rules = rules_of(flight.scenario, wind_mean_enu_m_s=mean_wind_enu_m_s(flight.scenario, flight.seed))
+    return FlownSortie(task=task, score=score_sortie(flight.recording, flight.operator, rules, ended))
 
 
 def lost_sortie(task: SortieTask, why: str) -> FlownSortie:
@@ -64,6 +77,7 @@ def lost_sortie(task: SortieTask, why: str) -> FlownSortie:
         error_straight_m=None,
         error_bend_m=None,
         error_max_m=None,
+        error_by_station_m=(),
         moved_m=None,
         refused=0,
         tier=Tier.UNSAFE,
@@ -71,5 +85,6 @@ def lost_sortie(task: SortieTask, why: str) -> FlownSortie:
         lift_off_s=None,
         return_s=None,
         return_from_m=None,
+        comes_by_itself=False,
     )
     return FlownSortie(task=task, score=score)

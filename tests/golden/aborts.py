@@ -24,6 +24,7 @@ _PARKED = {"chase": {"parked_wait_s": 0.5}}
 _LONG_ALIGNMENT = {"alignment": {"hold_s": 20.0}}
 _ANTENNA_OVER_PAD = {"antenna_flu_m": (0.0, 0.0, 1.6)}  # no heading is needed to place the pad
 _RAISED_M = 3.0
+_FAR_WRONG_M = 1.6  # more than a range finder is believed to correct: half of that pad's height over its road
 _WRONG_M = 1.2  # more than what a range finder sees may be off the height of a pad that is told wrong
 _BESIDE_M = 0.4
 _OVER_EDGE_M = 2.25  # from the middle of a roof of 4.2 m: what looks down sees the road, and a foot is on the roof
@@ -182,7 +183,8 @@ ABORTS: dict[str, Abort] = {
     "outrun": Abort(reason=Reason.VEHICLE_OUTRUNS, phase=Phase.ALIGN, fault=_limit_is_lowered),
     "below_pad": Abort(reason=Reason.BELOW_PAD, fault=_pad_is_described(forward_m=0.0, up_m=_RAISED_M)),
     "nothing_touched": Abort(
-        reason=Reason.NOTHING_TOUCHED, fault=_pad_is_described(forward_m=0.0, up_m=_WRONG_M, over_road_m=_WRONG_M)
+        reason=Reason.NOTHING_TOUCHED,
+        fault=_pad_is_described(forward_m=0.0, up_m=_FAR_WRONG_M, over_road_m=_FAR_WRONG_M),
     ),
     "road_below": Abort(
         reason=Reason.ROAD_BELOW,

@@ -46,7 +46,26 @@ def test_height_that_was_told_is_doubted_as_a_rate_that_lasts_moves_it(step_s: f
     for _ in range(round(after_s / step_s)):
         later = model.predict(later, step_s)
     grown_m2 = _height_variance_m2(later) - _height_variance_m2(told)
-    assert math.sqrt(grown_m2) == pytest.approx(RECEIVERS.own_height_rate_std_m_s * after_s, rel=0.1)
+    # Of the integral of a Gauss-Markov rate (Ornstein-Uhlenbeck) of the time constant T: 2 s^2 T (t - T (1 - e^(-t/T)))
+    time_s = RECEIVERS.own_height_rate_time_s
+    moved_s = math.sqrt(2.0 * time_s * (after_s - time_s * (1.0 - math.exp(-after_s / time_s))))
+    assert math.sqrt(grown_m2) == pytest.approx(RECEIVERS.own_height_rate_std_m_s * moved_s, rel=0.1)
+
+
+def test_height_whose_rate_was_told_goes_no_farther_than_the_rate_lasts() -> None:
+    """As after a launch, when the drone has left the pad that its range finder saw; its own height comes back."""
+    model = ImmModel(config=ImmConfig(), deck=Deck())
+    state, rate_m_s, step_s = _started(), 0.1, 0.1
+    for index in range(30):
+        seen = replace(_sighting(), value=np.array([0.0, 0.0, rate_m_s * index * step_s]))
+        told = model.update(state, seen)
+        assert told is not None
+        state = model.predict(told.state, step_s)
+    left_m = model.describe(state, 0).position_enu_m[2]
+    for _ in range(300):
+        state = model.predict(state, step_s)
+    gone_m = model.describe(state, 0).position_enu_m[2] - left_m
+    assert 0.05 < gone_m < 1.2 * rate_m_s * RECEIVERS.own_height_rate_time_s
 
 
 def test_height_that_was_not_told_for_long_is_doubted_no_more() -> None:

@@ -7,7 +7,7 @@ import pytest
 from link.frames.geodesy import Datum, enu_from_geodetic, geodetic_from_enu
 from link.frames.rotations import rotate
 from link.mavlink.dialect import mavlink
-from scenarios.firmware.ship import ShipReport, ship_at, ship_at_rest, ship_report
+from scenarios.firmware.ship import ASTERN_M, ShipReport, ship_at, ship_at_rest, ship_report
 from scenarios.firmware.truth import body_truth, motors_armed, rotor_truth, true_pose
 
 DATUM = Datum(latitude_rad=math.radians(47.4), longitude_rad=math.radians(8.5), altitude_m=488.0)
@@ -85,11 +85,14 @@ def test_ship_at_its_speed_speeds_up_at_no_instant_about_its_report(after_ns: in
 
 
 def test_ship_lies_where_and_as_its_first_report_has_it() -> None:
-    latitude_rad, longitude_rad, _ = geodetic_from_enu(DATUM, (-1.5, -40.0, 0.0))
+    latitude_rad, longitude_rad, _ = geodetic_from_enu(DATUM, (*ASTERN_M, 0.0))
     first = ShipReport(
         boot_ns=0, latitude_rad=latitude_rad, longitude_rad=longitude_rad, speed_m_s=0.0, yaw_rad=math.radians(90.0)
     )
-    lies, sails = ship_at_rest(7 * NS), ship_at(first, 7 * NS, 8 * NS, DATUM, turn_radius_m=500.0, ordered_m_s=5.0)
+    lies, sails = (
+        ship_at_rest(7 * NS, ASTERN_M),
+        ship_at(first, 7 * NS, 8 * NS, DATUM, turn_radius_m=500.0, ordered_m_s=5.0),
+    )
     assert lies.position_enu_m == pytest.approx(sails.position_enu_m, abs=1e-3)
     assert (lies.t_ns, lies.velocity_enu_m_s, lies.orientation_wxyz) == (
         7 * NS,

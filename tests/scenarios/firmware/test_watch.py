@@ -72,3 +72,17 @@ def test_a_truth_without_its_fellow_is_dated_by_its_arrival() -> None:
     autopilot.intervals_ns = {mavlink.MAVLINK_MSG_ID_SIM_STATE: 10 * MS, mavlink.MAVLINK_MSG_ID_GPS_RAW_INT: S}
     # The clocks are an exchange of 40 ms off by half of it.
     assert ahead_m(fly(autopilot, 40 * MS), autopilot) == pytest.approx(-0.020 * SPEED_M_S, abs=0.05)
+
+
+def test_drone_stands_where_it_is_put() -> None:
+    autopilot = Simulation()
+    watch = fly(autopilot, 0)
+    before, datum, place_m = watch.drone, watch.datum, (-70.0, 12.0, 0.5)
+    assert before is not None
+    assert datum is not None
+    moved = watch.let_it_stand_at(place_m)
+    assert watch.datum == moved
+    assert watch.drone is None
+    assert not watch.take_truths()
+    there_m = enu_from_geodetic(moved, datum.latitude_rad, datum.longitude_rad, datum.altitude_m)
+    assert there_m == pytest.approx(place_m, abs=1e-3)

@@ -9,7 +9,7 @@ from scenarios.catalogue.catalogue import load_changed_scenario
 from scenarios.simulation.drone import sim_autopilot_config
 from scenarios.simulation.vehicle import VehicleMemory, vehicle_at
 from scenarios.simulation.vehicle_node import plan_of
-from scenarios.sortie.flight import stations_of
+from scenarios.sortie.script import stations_of
 from scenarios.sortie.task import sortie_scenario
 
 
