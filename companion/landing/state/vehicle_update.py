@@ -7,8 +7,9 @@ import numpy as np
 from companion.core.data import Array, Forecast, Measurement, Quantity, RangeReading
 from companion.integrity.frames import are_frames_one, has_lost_fix, update_fixed_phases, with_place_step
 from companion.integrity.sightings import SightingWatch, forget_agreement, forget_step, update_sightings
-from companion.integrity.stamps import FixStamps, update_fix_stamps
+from companion.integrity.stamps import FixStamps, is_step_of_stamps, update_fix_stamps
 from companion.integrity.vehicle_data import Contradictions, update_contradictions, without_contradicted_heading
+from companion.integrity.way import way_error
 from companion.landing.state.memory import VehicleMemory, between
 from companion.landing.state.step_data import StepInputs, System
 from companion.landing.steering.targets import HORIZON_OFFSETS_S
@@ -40,14 +41,19 @@ def update_vehicle(vehicle: VehicleMemory, inputs: StepInputs, system: System) -
         if rises_m is not None:
             apart_std_m = 0.0 if _are_frames_one(vehicle, inputs, system) else math.inf
             measurements += surface_measurements(seen, rises_m, inputs.t_ns, system.config.touchdown, apart_std_m)
+    way = way_error(system.estimator, estimator, measurements)
     if measurements:
         estimator = system.estimator.fuse(estimator, measurements)
     contradictions, sightings, phases = vehicle.contradictions, vehicle.sightings, vehicle.phases
+    newest_fix_ns = system.estimator.newest_fix_ns(estimator)
+    if newest_fix_ns is not None and newest_fix_ns != vehicle.fix_stamps.newest_ns:
+        is_of_stamps = is_step_of_stamps(vehicle.fix_stamps, (inputs.t_ns - newest_fix_ns) * 1e-9, way)
+        place_step = system.estimator.health(estimator).place_step
+        phases = with_place_step(phases, place_step, way if is_of_stamps else None)
     if contradictions.is_due(now_ns):
         health = system.estimator.health(estimator)
         contradictions = update_contradictions(contradictions, health, now_ns)
         sightings = update_sightings(sightings, health, now_ns, system.config)
-        phases = with_place_step(phases, health.place_step)
     if has_lost_fix(phases, inputs.autopilot.receiver, now_ns):
         sightings = forget_agreement(sightings)  # dead reckoning takes the drone away from where it has seen the pad
     return replace(
@@ -56,10 +62,11 @@ def update_vehicle(vehicle: VehicleMemory, inputs: StepInputs, system: System) -
         hindsight=update_hindsight(vehicle.hindsight, system.estimator, estimator, inputs.t_ns, monotonic_ns=now_ns),
         fix_stamps=update_fix_stamps(
             vehicle.fix_stamps,
-            system.estimator.newest_fix_ns(estimator),
+            newest_fix_ns,
             inputs.t_ns,
             now_ns,
-            inputs.vehicle.fix_ahead_s,
+            early_s=inputs.vehicle.fix_ahead_s,
+            way=way,
         ),
         contradictions=contradictions,
         sightings=sightings,
