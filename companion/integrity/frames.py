@@ -133,6 +133,11 @@ def with_place_step(
     return replace(before, steps=count, stamps_off_s=0.0 if is_back else off_s)
 
 
+def without_place_step(before: FixedPhases) -> FixedPhases:
+    """Return what both receivers say where the steps so far were those of an estimate that was led astray."""
+    return replace(before, has_vehicle_stepped=False, stamps_off_s=0.0)
+
+
 def has_lost_fix(before: FixedPhases, drone: Receiver, monotonic_ns: int) -> bool:
     """Return whether the drone's receiver is without a fix since now; a short one in between is none.
 

@@ -15,6 +15,7 @@ from companion.integrity.frames import (
     has_lost_fix,
     update_fixed_phases,
     with_place_step,
+    without_place_step,
 )
 from companion.integrity.sightings import SightingWatch
 from companion.integrity.way import WayError
@@ -114,6 +115,13 @@ def test_vehicle_whose_stamps_step_has_no_frame_until_they_have_gone_back() -> N
     back = with_place_step(phases, (1, 0.7), on_way(0.071))  # so soon that the filter was open still
     assert are_frames_one(back, AUTO, LATER_NS)
     assert not are_frames_one(with_place_step(back, (2, 0.7), on_way(0.071)), AUTO, LATER_NS)
+
+
+@pytest.mark.parametrize("of_stamps", [None, on_way(-0.078)])
+def test_step_of_an_estimate_that_was_led_astray_takes_no_frame_for_good(of_stamps: WayError | None) -> None:
+    phases = without_place_step(with_place_step(after(FIXED), (1, 0.7), of_stamps))
+    assert are_frames_one(phases, AUTO, LATER_NS)
+    assert not are_frames_one(with_place_step(phases, (2, 0.7), of_stamps), AUTO, LATER_NS)
 
 
 def test_stamps_that_go_back_vouch_for_no_receiver_that_has_stepped() -> None:

@@ -1,4 +1,4 @@
-"""A fix is elsewhere on the vehicle's way by its stamp, beside it by its receiver, and where it was expected by a link."""
+"""A fix is elsewhere on the vehicle's way by its stamp, beside it by its receiver, and as expected by a slow link."""
 
 import math
 
