@@ -21,6 +21,7 @@ from companion.autopilots.driver import Receiver
 from companion.autopilots.frame_moves import NO_MOVES, FrameMoves, stepped_in_frame_m
 from companion.config.integrity import ReceiverFrames
 from companion.core.data import FIXED_STD_MAX_M, Measurement, Quantity
+from companion.integrity.way import WayError
 from link.records import replace
 
 _HOLD_S = 2.0  # two of the autopilot's reports of its receiver
@@ -34,6 +35,7 @@ class FixedPhases(Struct, frozen=True, kw_only=True):
         since_ns: monotonic, since when both have had fixed phases without a break; None while one has not.
         steps: of the vehicle's place, when they were last counted.
         has_vehicle_stepped: by more than fixed phases err, while both had them.
+        stamps_off_s: by how much its stamps have stepped since, as its places tell; 0 once they have gone back.
         fixed_moves: of the drone's place and of its local frame, when both had fixed phases first.
         has_drone_stepped: since then, by more than fixed phases err.
         unfixed_ns: monotonic, when the drone's receiver was without a fix last; None while it never was.
@@ -43,6 +45,7 @@ class FixedPhases(Struct, frozen=True, kw_only=True):
     since_ns: int | None = None
     steps: int = 0
     has_vehicle_stepped: bool = False
+    stamps_off_s: float = 0.0
     fixed_moves: FrameMoves = NO_MOVES
     has_drone_stepped: bool = False
     unfixed_ns: int | None = None
@@ -50,7 +53,7 @@ class FixedPhases(Struct, frozen=True, kw_only=True):
     @property
     def has_stepped(self) -> bool:
         """Whether one of them has, and has not been fixed anew."""
-        return self.has_vehicle_stepped or self.has_drone_stepped
+        return self.has_vehicle_stepped or self.has_drone_stepped or self.stamps_off_s != 0.0
 
 
 def update_fixed_phases(
@@ -86,6 +89,7 @@ def update_fixed_phases(
         since_ns=(monotonic_ns if before.since_ns is None else before.since_ns) if are_both else None,
         steps=before.steps,
         has_vehicle_stepped=before.has_vehicle_stepped and vehicle_is_fixed,
+        stamps_off_s=before.stamps_off_s if vehicle_is_fixed else 0.0,
         fixed_moves=fixed_moves,
         has_drone_stepped=_has_drone_stepped(fixed_moves, moves),
         unfixed_ns=monotonic_ns if drone.has_fix is False else before.unfixed_ns,
@@ -105,13 +109,33 @@ def _has_drone_stepped(fixed: FrameMoves, now: FrameMoves) -> bool:
     return math.hypot(east_m - fixed_east_m, north_m - fixed_north_m) > 2.0 * FIXED_STD_MAX_M + unsure_m
 
 
-def with_place_step(before: FixedPhases, place_step: tuple[int, float]) -> FixedPhases:
-    """Return what both receivers say, and whether the vehicle's place has stepped, as `BufferHealth` has it."""
+def with_place_step(
+    before: FixedPhases, place_step: tuple[int, float], of_stamps: WayError | None = None
+) -> FixedPhases:
+    """Return what both receivers say, and whether the vehicle's place has stepped.
+
+    Stamps that step move it along its way, and back once they are what they were: the sum counts.
+
+    Args:
+        before: by the step before.
+        place_step: as `BufferHealth` has it.
+        of_stamps: how the fix differs from what was expected, if its stamp has stepped; None if its place has.
+    """
     count, moved_m = place_step
-    if count == before.steps:
-        return before
     has_stepped = count > before.steps and before.since_ns is not None and moved_m > 2.0 * FIXED_STD_MAX_M
-    return replace(before, steps=count, has_vehicle_stepped=before.has_vehicle_stepped or has_stepped)
+    if of_stamps is None or not (has_stepped or before.stamps_off_s):
+        has_vehicle_stepped = before.has_vehicle_stepped or has_stepped
+        return (
+            before if count == before.steps else replace(before, steps=count, has_vehicle_stepped=has_vehicle_stepped)
+        )
+    off_s = before.stamps_off_s + of_stamps.ahead_s
+    is_back = before.stamps_off_s != 0.0 and abs(off_s) * of_stamps.speed_m_s <= 4.0 * FIXED_STD_MAX_M
+    return replace(before, steps=count, stamps_off_s=0.0 if is_back else off_s)
+
+
+def without_place_step(before: FixedPhases) -> FixedPhases:
+    """Return what both receivers say where the steps so far were those of an estimate that was led astray."""
+    return replace(before, has_vehicle_stepped=False, stamps_off_s=0.0)
 
 
 def has_lost_fix(before: FixedPhases, drone: Receiver, monotonic_ns: int) -> bool:

@@ -3,12 +3,17 @@
 A fix is as old when it comes as the link was slow and the two clocks differ. A link has its quick and its slow moments.
 A clock that was set, the vehicle's or the one that the autopilot's UTC comes from, makes each fix by as much older or
 younger: all of the last second, and the last four, are then older than any of the seconds before, or younger. The pad
-is believed elsewhere on the vehicle's way, and nobody knows which of the two times was right.
+is believed elsewhere on the vehicle's way, and nobody knows which of the two times was right. A link that became slower
+makes them older, too, but puts no fix elsewhere on that way.
 """
+
+from typing import NamedTuple
 
 from msgspec import Struct
 
 from companion.config.companion import CompanionConfig
+from companion.core.data import FIXED_STD_MAX_M
+from companion.integrity.way import WayError
 from companion.situation.situation import Situation
 from companion.vehicle.pad_reach import cone_radius_at_pad_m
 from link.records import replace
@@ -19,8 +24,25 @@ _KNOWN_NS = 60_000_000_000  # after which nobody remembers another clock
 _RECENT_MIN, _EARLIER_MIN = 4, 10  # fixes
 _REFINED_S = 0.05  # by which the map to UTC may be refined at once
 
-Ages = tuple[tuple[int, float], ...]
-"""Monotonic ns of its arrival, and the age of a fix then, s; oldest first."""
+_OF_CLOCK = 0.5  # share of a step of the ages by which the places step along the way as well, or the link is slower
+
+
+class Arrival(NamedTuple):
+    """A fix as it came.
+
+    Attributes:
+        at_ns: when, monotonic.
+        age_s: of it then.
+        ahead_s: of where it was expected on the vehicle's way, as `WayError` has it; None where that is not known.
+    """
+
+    at_ns: int
+    age_s: float
+    ahead_s: float | None = None
+
+
+Ages = tuple[Arrival, ...]
+"""Oldest first."""
 
 
 class FixStamps(Struct, frozen=True, kw_only=True):
@@ -44,7 +66,13 @@ class FixStamps(Struct, frozen=True, kw_only=True):
 
 
 def update_fix_stamps(
-    stamps: FixStamps, newest_ns: int | None, t_ns: int, monotonic_ns: int, ahead_s: float | None = None
+    stamps: FixStamps,
+    newest_ns: int | None,
+    t_ns: int,
+    monotonic_ns: int,
+    *,
+    early_s: float | None = None,
+    way: WayError | None = None,
 ) -> FixStamps:
     """Return the stamps with the newest fix as it is known at `t_ns`.
 
@@ -53,48 +81,82 @@ def update_fix_stamps(
         newest_ns: stamp of the newest accepted fix.
         t_ns: now, UTC.
         monotonic_ns: now, for spans of time.
-        ahead_s: by which a newer one came before its stamp, too far to be accepted; None if none did.
+        early_s: by which a newer one came before its stamp, too far to be accepted; None if none did.
+        way: how it differs from what was expected; None where that is not known.
     """
-    if ahead_s is not None:
-        return replace(stamps, newest_ns=newest_ns, age_on_arrival_s=-ahead_s)
+    if early_s is not None:
+        return replace(stamps, newest_ns=newest_ns, age_on_arrival_s=-early_s)
     if newest_ns == stamps.newest_ns:
         return stamps
     if newest_ns is None:
         return FixStamps()
     age_s = (t_ns - newest_ns) * 1e-9
-    return _compare(replace(stamps, newest_ns=newest_ns, age_on_arrival_s=age_s), (monotonic_ns, age_s))
+    arrival = Arrival(monotonic_ns, age_s, None if way is None else way.ahead_s)
+    return _compare(replace(stamps, newest_ns=newest_ns, age_on_arrival_s=age_s), arrival)
 
 
-def _compare(stamps: FixStamps, newest: tuple[int, float]) -> FixStamps:
+def is_step_of_stamps(stamps: FixStamps, age_s: float, way: WayError | None) -> bool:
+    """Return whether a fix puts the vehicle elsewhere by its stamp alone.
+
+    Its age differs from that of the fix before it by the time in which the vehicle drives so far, within what fixed
+    phases err.
+
+    Args:
+        stamps: before it.
+        age_s: of it as it came.
+        way: how it differs from what was expected.
+    """
+    if way is None or stamps.age_on_arrival_s is None:
+        return False
+    along_m = abs(way.ahead_s) * way.speed_m_s
+    unexplained_m = abs(way.ahead_s - (age_s - stamps.age_on_arrival_s)) * way.speed_m_s
+    return max(unexplained_m, way.across_m) <= 2.0 * FIXED_STD_MAX_M < along_m
+
+
+def _compare(stamps: FixStamps, newest: Arrival) -> FixStamps:
     """Return the stamps after a fix has come: those before a step stay until it is over, or long ago."""
-    now_ns = newest[0]
+    now_ns = newest.at_ns
     if stamps.stepped_s and now_ns - stamps.stepped_ns > _KNOWN_NS:
         stamps = replace(stamps, ages=stamps.recent, recent=(), stepped_s=0.0)
     if stamps.stepped_s:
         recent = _newest((*stamps.recent, newest), now_ns)
         return replace(stamps, recent=recent, stepped_s=_step_s(stamps.ages, recent))
-    ages = tuple(one for one in (*stamps.ages, newest) if one[0] > now_ns - _KEPT_NS)
+    ages = tuple(one for one in (*stamps.ages, newest) if one.at_ns > now_ns - _KEPT_NS)
     recent = _newest(ages, now_ns)
     earlier = ages[: len(ages) - len(recent)]
     stepped_s = _step_s(earlier, recent)
-    if not stepped_s:
+    if not _is_of_clock(stepped_s, ages[-len(recent) - _RECENT_MIN :]):
         return replace(stamps, ages=ages, recent=())
     return replace(stamps, ages=earlier, recent=recent, stepped_s=stepped_s, stepped_ns=now_ns)
 
 
 def _newest(ages: Ages, now_ns: int) -> Ages:
     """Return the ages of the last second, and of no fewer fixes than something is said of."""
-    return ages[-max(sum(at_ns > now_ns - _RECENT_NS for at_ns, _ in ages), _RECENT_MIN) :]
+    return ages[-max(sum(one.at_ns > now_ns - _RECENT_NS for one in ages), _RECENT_MIN) :]
 
 
 def _step_s(earlier: Ages, recent: Ages) -> float:
     """Return by how much all recent fixes are older than any before, negative if younger; 0 where they are not."""
     if len(recent) < _RECENT_MIN or len(earlier) < _EARLIER_MIN:
         return 0.0
-    before, now = [age_s for _, age_s in earlier], [age_s for _, age_s in recent]
+    before, now = [one.age_s for one in earlier], [one.age_s for one in recent]
     if min(now) - max(before) > _REFINED_S:
         return min(now) - max(before)
     return max(now) - min(before) if min(before) - max(now) > _REFINED_S else 0.0
+
+
+def _is_of_clock(stepped_s: float, ages: Ages) -> bool:
+    """Return whether ages that have stepped did so by a clock: unless all places are where they were expected.
+
+    An estimate that has gone along with the step expects the next fixes where they come. So the first of them decides,
+    and those before it, for a link's jitter hides the step in the ages at first.
+
+    Args:
+        stepped_s: by how much they have stepped; 0 where they have not.
+        ages: of those since the step, and of some before it.
+    """
+    off_min_s = _OF_CLOCK * abs(stepped_s)
+    return stepped_s != 0.0 and any(one.ahead_s is None or abs(one.ahead_s) > off_min_s for one in ages)
 
 
 def is_stamped_ahead(s: Situation, c: CompanionConfig) -> bool:

@@ -5,10 +5,17 @@ import math
 import numpy as np
 
 from companion.core.data import Array, Forecast, Measurement, Quantity, RangeReading
-from companion.integrity.frames import are_frames_one, has_lost_fix, update_fixed_phases, with_place_step
+from companion.integrity.frames import (
+    are_frames_one,
+    has_lost_fix,
+    update_fixed_phases,
+    with_place_step,
+    without_place_step,
+)
 from companion.integrity.sightings import SightingWatch, forget_agreement, forget_step, update_sightings
-from companion.integrity.stamps import FixStamps, update_fix_stamps
+from companion.integrity.stamps import FixStamps, is_step_of_stamps, update_fix_stamps
 from companion.integrity.vehicle_data import Contradictions, update_contradictions, without_contradicted_heading
+from companion.integrity.way import way_error
 from companion.landing.state.memory import VehicleMemory, between
 from companion.landing.state.step_data import StepInputs, System
 from companion.landing.steering.targets import HORIZON_OFFSETS_S
@@ -19,6 +26,7 @@ from companion.vehicle.pad import PadPath, pad_path
 from companion.vehicle.pad_reach import is_agreement_old
 from companion.vehicle.range_watch import RangeWatch, moved_up, watch_ranges
 from companion.vehicle.surface import surface_measurements
+from companion.vehicle.velocity_lag import dated_velocities, learn_lag
 from link.records import replace
 
 _APPROACHING = LANDING_PHASES | {Phase.ABORT, Phase.TOUCHDOWN}
@@ -31,7 +39,8 @@ def update_vehicle(vehicle: VehicleMemory, inputs: StepInputs, system: System) -
     """Fuse what the vehicle sent, and compare it with what was known before."""
     vehicle = _in_present_frame(_in_present_utc(vehicle, inputs), inputs, system)
     estimator, now_ns = vehicle.estimator, inputs.monotonic_ns
-    measurements, seen = inputs.vehicle.measurements, inputs.autopilot.range_down
+    lag = learn_lag(vehicle.velocity_lag, inputs.vehicle.measurements)
+    measurements, seen = dated_velocities(lag, inputs.vehicle.measurements), inputs.autopilot.range_down
     if seen is not None and estimator is not None and _is_to_be_read(seen, vehicle.ranges, inputs.t_ns):
         then = system.estimator.forecast(estimator, seen.t_ns, _PRESENT_OFFSETS_S)
         vehicle_up_m = None if then is None else float(then.position_enu_m[0, 2])
@@ -40,26 +49,35 @@ def update_vehicle(vehicle: VehicleMemory, inputs: StepInputs, system: System) -
         if rises_m is not None:
             apart_std_m = 0.0 if _are_frames_one(vehicle, inputs, system) else math.inf
             measurements += surface_measurements(seen, rises_m, inputs.t_ns, system.config.touchdown, apart_std_m)
+    way = way_error(system.estimator, estimator, measurements)
     if measurements:
         estimator = system.estimator.fuse(estimator, measurements)
     contradictions, sightings, phases = vehicle.contradictions, vehicle.sightings, vehicle.phases
+    newest_fix_ns = system.estimator.newest_fix_ns(estimator)
+    if newest_fix_ns is not None and newest_fix_ns != vehicle.fix_stamps.newest_ns:
+        is_of_stamps = is_step_of_stamps(vehicle.fix_stamps, (inputs.t_ns - newest_fix_ns) * 1e-9, way)
+        place_step = system.estimator.health(estimator).place_step
+        phases = with_place_step(phases, place_step, way if is_of_stamps else None)
+    if lag.is_known and not vehicle.velocity_lag.is_known:
+        phases = without_place_step(phases)  # velocities that were too old have led the estimate away from the places
     if contradictions.is_due(now_ns):
         health = system.estimator.health(estimator)
         contradictions = update_contradictions(contradictions, health, now_ns)
         sightings = update_sightings(sightings, health, now_ns, system.config)
-        phases = with_place_step(phases, health.place_step)
     if has_lost_fix(phases, inputs.autopilot.receiver, now_ns):
         sightings = forget_agreement(sightings)  # dead reckoning takes the drone away from where it has seen the pad
     return replace(
         vehicle,
         estimator=estimator,
+        velocity_lag=lag,
         hindsight=update_hindsight(vehicle.hindsight, system.estimator, estimator, inputs.t_ns, monotonic_ns=now_ns),
         fix_stamps=update_fix_stamps(
             vehicle.fix_stamps,
-            system.estimator.newest_fix_ns(estimator),
+            newest_fix_ns,
             inputs.t_ns,
             now_ns,
-            inputs.vehicle.fix_ahead_s,
+            early_s=inputs.vehicle.fix_ahead_s,
+            way=way,
         ),
         contradictions=contradictions,
         sightings=sightings,

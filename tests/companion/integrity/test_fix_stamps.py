@@ -1,12 +1,14 @@
 """Fixes from the future, or whose stamps step: no landing on them is begun or goes on; a few of them change nothing."""
 
 from collections.abc import Iterable
+from itertools import zip_longest
 
 import numpy as np
 import pytest
 
 from companion.core.reasons import Reason
-from companion.integrity.stamps import FixStamps, have_stamps_stepped, update_fix_stamps
+from companion.integrity.stamps import FixStamps, have_stamps_stepped, is_step_of_stamps, update_fix_stamps
+from companion.integrity.way import WayError
 from companion.situation.phases import Phase
 from link.messages import Command
 from link.records import replace
@@ -54,12 +56,18 @@ def test_early_fixes_among_others_change_nothing() -> None:
         assert flight.phase is not Phase.ABORT
 
 
-def heard(stamps: FixStamps, ages_s: Iterable[float], period_s: float = 0.1) -> FixStamps:
-    """The stamps after fixes of these ages, one each period."""
-    for age_s in ages_s:
+def on_way(ahead_s: float, across_m: float = 0.02, speed_m_s: float = 7.0) -> WayError:
+    return WayError(ahead_s=ahead_s, across_m=across_m, speed_m_s=speed_m_s)
+
+
+def heard(
+    stamps: FixStamps, ages_s: Iterable[float], period_s: float = 0.1, ways: Iterable[WayError] = ()
+) -> FixStamps:
+    """The stamps after fixes of these ages, one each period, and where the first of them are on the vehicle's way."""
+    for age_s, way in zip_longest(list(ages_s), ways):
         now_ns = (stamps.ages[-1][0] if not stamps.recent else stamps.recent[-1][0]) if stamps.ages else START_NS
         now_ns += round(period_s * 1e9)
-        stamps = update_fix_stamps(stamps, now_ns - round(age_s * 1e9), now_ns, now_ns)
+        stamps = update_fix_stamps(stamps, now_ns - round(age_s * 1e9), now_ns, now_ns, way=way)
     return stamps
 
 
@@ -93,6 +101,31 @@ def test_step_is_over_once_fixes_come_as_before_or_after_a_minute() -> None:
     assert heard(stepped, jittering(620, 0.3, seed=3)).stepped_s == 0.0
 
 
+@pytest.mark.parametrize(("ahead_s", "is_step"), [(0.01, False), (-0.04, False), (0.19, True), (-0.12, True)])
+def test_link_that_becomes_slower_is_no_step_but_a_clock_that_is_set_back_is(ahead_s: float, *, is_step: bool) -> None:
+    before = heard(FixStamps(), jittering(60), ways=[on_way(0.01)] * 60)
+    after = heard(before, jittering(20, 0.3, seed=2), ways=[on_way(ahead_s), *[on_way(-0.01)] * 19])
+    assert (after.stepped_s != 0.0) is is_step
+
+
+@pytest.mark.parametrize(
+    ("age_s", "way", "expected"),
+    [
+        (0.18, on_way(0.08), True),
+        (0.03, on_way(-0.072), True),
+        (0.18, on_way(0.04), False),  # 0.28 m less than its stamp explains
+        (0.18, on_way(0.08, across_m=0.2), False),
+        (0.1, on_way(0.08), False),
+        (0.1, on_way(0.002), False),
+        (0.18, None, False),
+    ],
+)
+def test_step_of_a_stamp_is_one_that_age_and_way_tell_alike(
+    age_s: float, way: WayError | None, *, expected: bool
+) -> None:
+    assert is_step_of_stamps(heard(FixStamps(), [0.1] * 12), age_s, way) is expected
+
+
 @pytest.mark.parametrize(
     ("speed_m_s", "stepped_s", "is_seen", "expected"),
     [(5.0, 0.07, False, True), (5.0, 0.055, False, False), (15.0, -0.06, False, True), (15.0, -0.06, True, False)],
@@ -105,8 +138,8 @@ def test_step_counts_where_it_moves_an_unseen_pad_by_more_than_s2_allows(
     assert have_stamps_stepped(changed(situation(pad=pad), stamps_stepped_s=stepped_s), CONFIG) is expected
 
 
-def told(stamps: FixStamps, newest_ns: int | None, t_ns: int, ahead_s: float | None = None) -> FixStamps:
-    return update_fix_stamps(stamps, newest_ns, t_ns, t_ns, ahead_s)
+def told(stamps: FixStamps, newest_ns: int | None, t_ns: int, early_s: float | None = None) -> FixStamps:
+    return update_fix_stamps(stamps, newest_ns, t_ns, t_ns, early_s=early_s)
 
 
 def test_age_is_that_of_the_step_which_took_the_fix_in() -> None:
@@ -120,5 +153,5 @@ def test_age_is_that_of_the_step_which_took_the_fix_in() -> None:
 
 def test_refused_fix_from_the_future_tells_by_how_much_it_came_early() -> None:
     known = told(FixStamps(), START_NS, START_NS + 200_000_000)
-    refused = told(known, START_NS, START_NS + 300_000_000, ahead_s=3.0)
+    refused = told(known, START_NS, START_NS + 300_000_000, early_s=3.0)
     assert refused == replace(known, age_on_arrival_s=-3.0)

@@ -15,8 +15,10 @@ from companion.integrity.frames import (
     has_lost_fix,
     update_fixed_phases,
     with_place_step,
+    without_place_step,
 )
 from companion.integrity.sightings import SightingWatch
+from companion.integrity.way import WayError
 from companion.landing.state.vehicle_update import update_vehicle
 from companion.situation.phases import Phase
 from link.messages import Vector3
@@ -99,6 +101,32 @@ def test_receiver_that_has_fixed_its_phases_anew_has_a_frame_again() -> None:
     for step, std_m in enumerate([0.3, *[0.01] * 30]):
         phases = update(phases, [fix(std_m)], LATER_NS + step * STEP_NS)
     assert are_frames_one(phases, AUTO, LATER_NS + 30 * STEP_NS)
+
+
+def on_way(ahead_s: float) -> WayError:
+    return WayError(ahead_s=ahead_s, across_m=0.02, speed_m_s=9.0)
+
+
+def test_vehicle_whose_stamps_step_has_no_frame_until_they_have_gone_back() -> None:
+    phases = with_place_step(after(FIXED), (1, 0.7), on_way(-0.078))
+    assert not are_frames_one(phases, AUTO, LATER_NS)
+    farther = with_place_step(phases, (2, 0.7), on_way(-0.076))
+    assert not are_frames_one(farther, AUTO, LATER_NS)
+    back = with_place_step(phases, (1, 0.7), on_way(0.071))  # so soon that the filter was open still
+    assert are_frames_one(back, AUTO, LATER_NS)
+    assert not are_frames_one(with_place_step(back, (2, 0.7), on_way(0.071)), AUTO, LATER_NS)
+
+
+@pytest.mark.parametrize("of_stamps", [None, on_way(-0.078)])
+def test_step_of_an_estimate_that_was_led_astray_takes_no_frame_for_good(of_stamps: WayError | None) -> None:
+    phases = without_place_step(with_place_step(after(FIXED), (1, 0.7), of_stamps))
+    assert are_frames_one(phases, AUTO, LATER_NS)
+    assert not are_frames_one(with_place_step(phases, (2, 0.7), of_stamps), AUTO, LATER_NS)
+
+
+def test_stamps_that_go_back_vouch_for_no_receiver_that_has_stepped() -> None:
+    phases = with_place_step(with_place_step(after(FIXED), (1, 0.7)), (2, 0.7), on_way(-0.078))
+    assert not are_frames_one(with_place_step(phases, (3, 0.7), on_way(0.078)), AUTO, LATER_NS)
 
 
 def test_drones_receiver_that_is_fixed_anew_vouches_for_no_vehicle_that_has_stepped() -> None:
