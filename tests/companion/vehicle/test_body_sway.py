@@ -109,6 +109,16 @@ def test_sway_is_followed_from_the_first_seconds_on_whatever_the_rate_and_the_ro
     assert watcher.state.sway is not None
 
 
+@pytest.mark.parametrize("rate_hz", [5.0, 20.0])
+@pytest.mark.parametrize("sway_m_s", [0.3, 0.8])
+def test_sway_far_larger_than_it_was_taken_to_be_is_not_driving(sway_m_s: float, rate_hz: float) -> None:
+    car = Deck(antenna_to_pad_m=(0.0, 0.0, -0.1), pad_height_m=1.5)
+    receiver = Sensors(fix_std_m=0.02, velocity_std_m_s=0.05, rate_hz=rate_hz)
+    watcher = Watcher(swaying(sway_m_s), car, receiver)
+    speeds = [watcher.motion_at(t_s)[0] for t_s in np.arange(8.0, 18.0, 0.1)]
+    assert rms([speed - SPEED_M_S for speed in speeds]) < 0.4 * sway_m_s / math.sqrt(2.0)
+
+
 def test_how_much_a_body_sways_is_learnt() -> None:
     found = []
     for sway_m_s in (0.0, SWAY_M_S):
