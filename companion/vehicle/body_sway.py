@@ -6,7 +6,8 @@ And the grade of a smooth road that begins to climb would be taken for a heave, 
 damping are those of a body on wheels; how much it sways depends on the road, and is learnt. By the law of total
 variance that of a rate is the mean of its square as far as it is known, and of what is left unknown. So a sway that
 nothing shows stays as it was taken to be. Of a wrong variance only that share shows by which a rate is known at all, so
-the step is as much larger.
+the step is as much larger. Nor does it show a sway that the models of driving explain: it is at least as
+large as the velocities themselves go to and fro (`to_and_fro`).
 Source: Shumway and Stoffer 1982, the EM algorithm for state-space models, with what is known at once.
 """
 
@@ -16,13 +17,16 @@ import numpy as np
 from msgspec import Struct
 
 from companion.config.estimation import ImmConfig, SwayConfig
-from companion.core.data import Array
+from companion.core.data import Array, Measurement, Quantity
 from companion.vehicle.deck_motion import MEMORY_S
 from companion.vehicle.imm_mixing import Modes
 from companion.vehicle.imm_swing import HEAVE_RATE, PITCH_RATE, ROLL_RATE
+from companion.vehicle.to_and_fro import ToAndFro, least_variances_m2_s2, passed, watch
+from link.records import replace
 
 _GAP_MAX_S = 1.0  # of velocities, after which the filter knows of no sway any more
 _SHOWS_MIN = 0.1  # of a wrong variance; what shows less is all chance
+_ANTENNA_MIN_M = 0.5  # above the axis of roll: a lower one hardly moves as the body tilts
 _RATE_STDS_MIN = (0.003, 0.003, 0.01)  # rad/s and m/s: less moves an antenna 4 m up by a centimetre a second
 
 
@@ -33,11 +37,13 @@ class BodySway(Struct, frozen=True, kw_only=True):
         rate_variances_rad2_s2: of roll and of pitch.
         heave_rate_variance_m2_s2: of the heave.
         seen_s: for how long they were watched, what is longer ago counting less.
+        antenna: how much it goes to and fro.
     """
 
     rate_variances_rad2_s2: tuple[float, float]
     heave_rate_variance_m2_s2: float
     seen_s: float
+    antenna: ToAndFro = ToAndFro()
 
 
 def first_sway(config: SwayConfig) -> BodySway:
@@ -70,7 +76,35 @@ def learn_sway(sway: BodySway, modes: Modes, dt_s: float, config: ImmConfig) -> 
         for i, before in zip((ROLL_RATE, PITCH_RATE, HEAVE_RATE), kept, strict=True)
     )
     roll, pitch, heave = (max(one, least**2) for one, least in zip(learnt, _RATE_STDS_MIN, strict=True))
-    return BodySway(rate_variances_rad2_s2=(roll, pitch), heave_rate_variance_m2_s2=heave, seen_s=seen_s)
+    return BodySway(
+        rate_variances_rad2_s2=(roll, pitch),
+        heave_rate_variance_m2_s2=heave,
+        seen_s=seen_s,
+        antenna=sway.antenna,
+    )
+
+
+def widen_sway(sway: BodySway, reading: Measurement, dt_s: float, antenna_m: float, config: ImmConfig) -> BodySway:
+    """Return the sway, at least as large as the antenna of a vehicle that drives goes to and fro.
+
+    Args:
+        sway: so far.
+        reading: of place or velocity.
+        dt_s: since the reading before.
+        antenna_m: its height above the axis of roll.
+        config: of the filter.
+    """
+    antenna = passed(sway.antenna, dt_s)
+    if reading.quantity is Quantity.VELOCITY and antenna_m > _ANTENNA_MIN_M:
+        east_m_s, north_m_s, _ = reading.value.tolist()
+        if math.hypot(east_m_s, north_m_s) > config.heading.curvature_speed_min_m_s:
+            antenna = watch(antenna, reading.value, reading.covariance, math.pi / _frequency_rad_s(config.sway))
+    if antenna is sway.antenna:
+        return sway
+    along, across = least_variances_m2_s2(antenna)
+    roll, pitch = sway.rate_variances_rad2_s2
+    least = (max(roll, across / antenna_m**2), max(pitch, along / antenna_m**2)) if antenna_m > 0.0 else (roll, pitch)
+    return replace(sway, antenna=antenna, rate_variances_rad2_s2=least)
 
 
 def _learnt(before: float, known: float, unknown: float, weight: float) -> float:

@@ -118,7 +118,7 @@ class ImmModel:
         course = self.numbers.courses[state.turn_age_s < TURN_AGE_MAX_S]
         modes, nis, gate_nis = judgement.take_reading(modes, reading, self.numbers.lever_m, course)
         tells_turn = measurement.quantity in TURNS and self.placed_by is Quantity.POSITION
-        deck, sway = learnt_body(state, modes, measurement.quantity, self.config, is_afloat=is_afloat)
+        deck, sway = learnt_body(state, modes, measurement, self.config, self.numbers, is_afloat=is_afloat)
         updated = ImmState(
             modes=modes,
             driving=steady_driving.learn(state.driving, modes, self.config) if tells_driving else state.driving,

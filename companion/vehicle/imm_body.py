@@ -4,7 +4,7 @@ import numpy as np
 
 from companion.config.estimation import ImmConfig
 from companion.core.data import Array, Measurement, Quantity
-from companion.vehicle.body_sway import BodySway, first_sway, learn_sway, sway_oscillators, sway_variances
+from companion.vehicle.body_sway import BodySway, first_sway, learn_sway, sway_oscillators, sway_variances, widen_sway
 from companion.vehicle.deck_motion import DeckMotion, first_motion, learn
 from companion.vehicle.imm_mixing import Modes
 from companion.vehicle.imm_numbers import Numbers, swing_of
@@ -41,14 +41,16 @@ def opened_body(
 
 
 def learnt_body(
-    state: ImmState, modes: Modes, quantity: Quantity, config: ImmConfig, *, is_afloat: bool
+    state: ImmState, modes: Modes, reading: Measurement, config: ImmConfig, numbers: Numbers, *, is_afloat: bool
 ) -> tuple[DeckMotion | None, BodySway | None]:
-    """Return what is known of the deck's swing and of the body's sway after a reading of `quantity`."""
-    if state.deck is not None and quantity is Quantity.TILT:
+    """Return what is known of the deck's swing and of the body's sway after a reading."""
+    if state.deck is not None and reading.quantity is Quantity.TILT:
         lag_s = swing_of(config, is_afloat=is_afloat).lag_s
         return learn(state.deck, (modes[2] @ modes[0])[SWINGING].tolist(), lag_s), state.sway
-    if state.sway is not None and quantity in MOTIONS:
-        return state.deck, learn_sway(state.sway, modes, state.unmeasured_s, config)
+    if state.sway is not None and reading.quantity in MOTIONS:
+        sway = learn_sway(state.sway, modes, state.unmeasured_s, config)
+        antenna_m = float(numbers.lever_m[3] - numbers.lever_m[2])
+        return state.deck, widen_sway(sway, reading, state.unmeasured_s, antenna_m, config)
     return state.deck, state.sway
 
 

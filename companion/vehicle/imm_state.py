@@ -151,10 +151,12 @@ def is_heading_known(state: ImmState, config: ImmConfig) -> bool:
 
 
 def has_settled(state: ImmState, config: ImmConfig) -> bool:
-    """Return whether the first fixes are in: what a vehicle of any speed does would be learnt about its tilt, too."""
-    _, covariances, _ = state.modes
-    speed_variance = float((covariances[:, 2, 2] + covariances[:, 3, 3]).max())
-    return is_heading_known(state, config) and speed_variance < _SETTLED_STD_M_S**2
+    """Return whether the first fixes are in: what a vehicle of any speed does would be learnt about its tilt, too.
+
+    What is known is what all models say together: a brake that may have begun since the last fix is always in doubt.
+    """
+    _, covariance = mixing.combine(*state.modes)
+    return is_heading_known(state, config) and covariance[2, 2] + covariance[3, 3] < _SETTLED_STD_M_S**2
 
 
 def seen_axes(state: ImmState, receivers: ReceiversConfig) -> NDArray[np.bool_]:

@@ -61,9 +61,9 @@ def climbing(grade: float) -> Drive:
 class Watcher:
     """The filter and what it has been told."""
 
-    def __init__(self, truth: Drive, deck: Deck = LORRY) -> None:
+    def __init__(self, truth: Drive, deck: Deck = LORRY, sensors: Sensors = GOOD) -> None:
         self.chosen = BufferedEstimator(model=ImmModel(config=CONFIG, deck=deck), config=EstimatorConfig().buffer)
-        self._waiting = sense(truth, GOOD, 7)[::-1]
+        self._waiting = sense(truth, sensors, 7)[::-1]
         self.memory: Memory | None = None
 
     def until(self, t_s: float) -> None:
@@ -96,6 +96,27 @@ def test_sway_of_an_antenna_is_not_taken_for_driving() -> None:
     motions = [watcher.motion_at(t_s) for t_s in np.arange(15.0, BRAKES_AT_S, 0.05)]
     assert rms([acceleration for _, acceleration in motions]) < 0.25 * SWAY_M_S * SWAY_RAD_S / math.sqrt(2.0)
     assert rms([speed - SPEED_M_S for speed, _ in motions]) < 0.5 * SWAY_M_S / math.sqrt(2.0)
+
+
+@pytest.mark.parametrize("rate_hz", [5.0, 10.0])
+@pytest.mark.parametrize("sway_m_s", [0.0, 0.6])
+def test_sway_is_followed_from_the_first_seconds_on_whatever_the_rate_and_the_road(
+    rate_hz: float, sway_m_s: float
+) -> None:
+    receiver = Sensors(fix_std_m=0.02, velocity_std_m_s=0.05, rate_hz=rate_hz)
+    watcher = Watcher(swaying(sway_m_s), sensors=receiver)
+    watcher.until(2.0)
+    assert watcher.state.sway is not None
+
+
+@pytest.mark.parametrize("rate_hz", [5.0, 20.0])
+@pytest.mark.parametrize("sway_m_s", [0.3, 0.8])
+def test_sway_far_larger_than_it_was_taken_to_be_is_not_driving(sway_m_s: float, rate_hz: float) -> None:
+    car = Deck(antenna_to_pad_m=(0.0, 0.0, -0.1), pad_height_m=1.5)
+    receiver = Sensors(fix_std_m=0.02, velocity_std_m_s=0.05, rate_hz=rate_hz)
+    watcher = Watcher(swaying(sway_m_s), car, receiver)
+    speeds = [watcher.motion_at(t_s)[0] for t_s in np.arange(8.0, 18.0, 0.1)]
+    assert rms([speed - SPEED_M_S for speed in speeds]) < 0.4 * sway_m_s / math.sqrt(2.0)
 
 
 def test_how_much_a_body_sways_is_learnt() -> None:
