@@ -122,6 +122,10 @@ class Reason(Enum):
 
     # A landing on this vehicle cannot be done.
     DRONE_TAKEN = "another companion is there for this drone, and was there first: end one of them"
+    SYSTEM_ID_SHARED = (
+        "two autopilots answer under the same system id, and both would arm: give each drone its own (MAV_SYS_ID, "
+        "SYSID_THISMAV), and see --system-id"
+    )
     VEHICLE_TAKEN = "{} lands on this vehicle, or stands on it: wait until it has gone"
     STAMPS_LATE = "vehicle's fixes come {:.1f} s after their stamps: set its clock by GNSS or NTP, or use a faster link"
     STAMPS_AHEAD = "vehicle's fixes come {:.2f} s before their stamps: set its clock by GNSS or NTP, or the autopilot's"
