@@ -87,10 +87,7 @@ class Reason(Enum):
     ALIGNMENT_LOST = "alignment lost"
     PAD_TO_BE_SEEN = "pad to be seen again"
     PAD_NOT_SEEN = "pad not seen"
-    OFFSET_UNKNOWN = (
-        "pad not seen, and both receivers have no common frame: use a pattern detector, RTK on both from one source, or"
-        " --receiver-frames one where they are known to have one"
-    )
+    OFFSET_UNKNOWN = "pad not seen, and both receivers have no common frame: {}"
     TAKEOFF_TOO_LONG = "takeoff took longer than {:g} s"
     CHASE_TOO_LONG = "chase took longer than {:g} s"
     ALIGN_TOO_LONG = "align took longer than {:g} s"
