@@ -35,6 +35,7 @@ class AutopilotView(Struct, frozen=True, kw_only=True):
     warns: bool = False  # it reports a failsafe, and follows the setpoints on
     overruled: bool = False  # by a failsafe: another mode than was last asked for is flown
     restarted: bool = False  # and not in control since
+    is_id_shared: bool = False  # another autopilot answers under its system id, and obeys its commands
     landed: bool | None = None
     taking_off: bool = False  # by itself, after a command
     refusal: str | None = None  # what it last said against arming

@@ -84,6 +84,9 @@ class AutopilotLink:
         if self._is_out_of_touch(local_ns):
             self._set_link(up=False)  # until a heartbeat says what the autopilot does now
         self._polled_ns = local_ns
+        is_id_shared = self.session.is_id_shared(local_ns)
+        if is_id_shared is not self.state.view.is_id_shared:
+            self.state = replace(self.state, view=replace(self.state.view, is_id_shared=is_id_shared))
         self._ask_for_origin(local_ns)
         if self.driver is not None:
             for name in self._questions.due(self.driver, local_ns):

@@ -8,6 +8,7 @@ from link.mavlink.requests import ONCE, Retries
 from link.records import replace
 
 ASK_AGAIN_S = 1.0  # the heartbeat that confirms a mode may be a second late
+ARMED_TOLD_S = 2.0  # after the order, at the latest: a heartbeat a second, and the link's way there and back
 _DISARM_AGAIN_S = 0.2  # even without an answer: a lost command lets the drone slide for as long
 _CUSTOM_MODE_FLAG = 1.0  # MAV_MODE_FLAG_CUSTOM_MODE_ENABLED
 _FORCE_DISARM = 21196.0  # MAVLink common, MAV_CMD_COMPONENT_ARM_DISARM, parameter 2
@@ -101,7 +102,7 @@ def arm(*, armed: bool, force: bool = False) -> AutopilotCommand:
 def is_arming(memory: DriverMemory, monotonic_ns: int) -> bool:
     """Return whether motors were asked for so lately that they may turn before anything has told so."""
     asked_ns = (memory.asked_ns or {}).get(arm(armed=True))
-    return asked_ns is not None and (monotonic_ns - asked_ns) * 1e-9 < ASK_AGAIN_S
+    return asked_ns is not None and (monotonic_ns - asked_ns) * 1e-9 < ARMED_TOLD_S
 
 
 def set_mode(main: int, sub: int = 0) -> AutopilotCommand:

@@ -41,7 +41,8 @@ def assess(
         launches: the drone is to leave a vehicle that drives, too.
         expects_vehicle: it was said where the vehicle is met, so that its silence fails.
     """
-    found = [_firmware(autopilot, config.autopilot.kind), _readiness(autopilot), _origin(autopilot)]
+    found = [_firmware(autopilot, config.autopilot.kind), *_shared_id(autopilot)]
+    found += [_readiness(autopilot), _origin(autopilot)]
     found += [_heights(autopilot, config.autopilot.geoid_height_m), _clock(autopilot)]
     found += [_rate(autopilot, name) for name in MOTION]
     found += [_latency(autopilot), _battery(autopilot, config.limits.battery_min_share)]
@@ -70,6 +71,14 @@ def _firmware(seen: AutopilotFacts, wanted: AutopilotKind) -> Finding:
     text = f"{name} {'.'.join(map(str, seen.version))}"
     level = pass_or(seen.version[:2] >= oldest, Level.WARN)
     return make_finding("firmware", text, level, f"update it: {name} from {oldest[0]}.{oldest[1]} on is known to work")
+
+
+def _shared_id(seen: AutopilotFacts) -> list[Finding]:
+    """Return the line for a second autopilot under the same system id, none where there is no such one."""
+    if not seen.is_id_shared:
+        return []
+    advice = "give each drone its own MAV_SYS_ID (PX4) or SYSID_THISMAV (ArduPilot), and companion its --system-id"
+    return [make_finding("system id", "two autopilots answer under it", Level.FAIL, advice, "both would arm")]
 
 
 def _readiness(seen: AutopilotFacts) -> Finding:

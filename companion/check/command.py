@@ -16,6 +16,7 @@ from companion.check.findings import Finding, Level, advised_values, is_ready, k
 from companion.runtime.command_line import ConfigArguments, MavlinkArguments
 from link.errors import UserError
 from link.program.cli import JsonOption
+from link.ros2.command_line import Ros2Arguments
 from link.zenoh.command_line import NameArguments, ZenohArguments
 
 if TYPE_CHECKING:
@@ -61,29 +62,31 @@ def check(
     chosen: ConfigArguments,
     names: NameArguments,
     endpoints: ZenohArguments,
+    ros2: Ros2Arguments,
 ) -> int:
     """Read the autopilot and the vehicle, and say what to change before a landing; exit code 1 when something fails.
 
     A vehicle that is silent fails only where -e, -l, --zenoh-config or --multicast-scouting says where it is met.
     """
     from companion.runtime.options import open_links
+    from link.ros2.layout import open_layout
     from link.transports.opening import open_transport
-    from link.zenoh.session import open_session
 
     if keep_file.is_dir():
         raise UserError(f"--keep {keep_file}: is a folder; name a file in it")
     settings = chosen.load()
     signing = mavlink.signing()
     back = None if restore is None else _values_to_restore(restore)
-    options = endpoints.options()
-    with open_transport(mavlink.mavlink) as transport, open_session(options) as zenoh:
+    options, keys = endpoints.options(), names.keys()
+    node = (f"/{keys.drone}", "companion_check")
+    with open_transport(mavlink.mavlink) as transport, open_layout(options, ros2.options(), keys, node) as zenoh:
         session = _find(transport, mavlink, signing, timeout)
         if back is not None:
             _write(session, back)
             return 0
         ask = _Question(
             zenoh=zenoh,
-            keys=names.keys(),
+            keys=keys,
             duration_s=duration,
             speed_m_s=speed_max,
             config=settings,

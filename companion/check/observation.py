@@ -15,6 +15,7 @@ class AutopilotFacts:
         vehicle_type: MAV_TYPE.
         version: major, minor, patch.
         can_arm: its own word on whether it would.
+        is_id_shared: another autopilot answers under its system id.
         has_origin: of its local frame.
         has_position: in its local frame.
         geoid_height_m: of mean sea level above the ellipsoid, by its receiver.
@@ -32,6 +33,7 @@ class AutopilotFacts:
     vehicle_type: int
     version: tuple[int, int, int] | None = None
     can_arm: bool | None = None
+    is_id_shared: bool = False
     has_origin: bool = False
     has_position: bool = False
     geoid_height_m: float | None = None

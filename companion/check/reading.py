@@ -112,6 +112,7 @@ class Reader:
             vehicle_type=vehicle_type,
             version=self._version(),
             can_arm=self._can_arm(),
+            is_id_shared=self.session.is_id_shared(self._t_ns),
             has_origin="GPS_GLOBAL_ORIGIN" in self._newest,
             geoid_height_m=self._geoid_height_m(),
             has_position="LOCAL_POSITION_NED" in self._newest,

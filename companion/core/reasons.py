@@ -87,10 +87,7 @@ class Reason(Enum):
     ALIGNMENT_LOST = "alignment lost"
     PAD_TO_BE_SEEN = "pad to be seen again"
     PAD_NOT_SEEN = "pad not seen"
-    OFFSET_UNKNOWN = (
-        "pad not seen, and both receivers have no common frame: use a pattern detector, RTK on both from one source, or"
-        " --receiver-frames one where they are known to have one"
-    )
+    OFFSET_UNKNOWN = "pad not seen, and both receivers have no common frame: {}"
     TAKEOFF_TOO_LONG = "takeoff took longer than {:g} s"
     CHASE_TOO_LONG = "chase took longer than {:g} s"
     ALIGN_TOO_LONG = "align took longer than {:g} s"
@@ -122,6 +119,10 @@ class Reason(Enum):
 
     # A landing on this vehicle cannot be done.
     DRONE_TAKEN = "another companion is there for this drone, and was there first: end one of them"
+    SYSTEM_ID_SHARED = (
+        "two autopilots answer under the same system id, and both would arm: give each drone its own (MAV_SYS_ID, "
+        "SYSID_THISMAV), and see --system-id"
+    )
     VEHICLE_TAKEN = "{} lands on this vehicle, or stands on it: wait until it has gone"
     STAMPS_LATE = "vehicle's fixes come {:.1f} s after their stamps: set its clock by GNSS or NTP, or use a faster link"
     STAMPS_AHEAD = "vehicle's fixes come {:.2f} s before their stamps: set its clock by GNSS or NTP, or the autopilot's"

@@ -19,8 +19,10 @@ from msgspec import Struct
 
 from companion.autopilots.driver import Receiver
 from companion.autopilots.frame_moves import NO_MOVES, FrameMoves, stepped_in_frame_m
+from companion.config.companion import CompanionConfig
 from companion.config.integrity import ReceiverFrames
 from companion.core.data import FIXED_STD_MAX_M, Measurement, Quantity
+from companion.core.reasons import Cause, Reason
 from companion.integrity.way import WayError
 from link.records import replace
 
@@ -160,6 +162,22 @@ def are_frames_one(phases: FixedPhases, configured: ReceiverFrames, monotonic_ns
             if phases.since_ns is None or phases.has_stepped:
                 return False
             return _is_held(phases.since_ns, monotonic_ns)
+
+
+_FRAME_REMEDIES = {
+    ReceiverFrames.AUTO: "use a pattern detector, RTK on both from one source, or --receiver-frames one where they are "
+    "known to have one",
+    ReceiverFrames.ONE: "the drone's has lost its fix, or the place of one has stepped: wait until it is fixed anew, "
+    "or use a pattern detector",
+    ReceiverFrames.APART: "use a pattern detector, or RTK on both from one source and --receiver-frames auto",
+}
+
+
+def tell_unseen(config: CompanionConfig) -> Cause:
+    """Return why a pad has to be seen, with what helps beside what is set already."""
+    if config.silent_vehicle is not None:
+        return Cause(Reason.PAD_NOT_SEEN)
+    return Cause(Reason.OFFSET_UNKNOWN, (_FRAME_REMEDIES[config.integrity.receiver_frames],))
 
 
 def _was_unfixed(phases: FixedPhases, monotonic_ns: int) -> bool:

@@ -108,6 +108,7 @@ def answer(
     obstacle: Cause | None = None,
     *,
     called_home: Cause | None = None,
+    is_arming: bool = False,
 ) -> tuple[Event | None, CommandReply]:
     """Return the event that the order amounts to, None when it changes no phase, and the reply.
 
@@ -118,8 +119,9 @@ def answer(
         config: all numbers.
         obstacle: why no landing can be done, None when one can.
         called_home: that the battery lasts just for the way home, None while it lasts longer.
+        is_arming: the motors may turn although nothing has told so yet.
     """
-    event = _event_of(order, phase, situation, config)
+    event = _event_of(order, phase, situation, config, may_turn=situation.autopilot.armed or is_arming)
     is_start = order.command in (Command.START, Command.START_ANYWAY)
     if phase in (Phase.ABORT, Phase.HOLD) and event in (Event.ABORT, Event.HOLD):
         return None, _ACCEPTED  # the climb goes on, but to no retry, and a hold stays one whatever is heard again
@@ -140,12 +142,10 @@ def answer(
     return (None, _refuse(missing)) if missing is not None else (event, _ACCEPTED)
 
 
-def _event_of(order: Order, phase: Phase, s: Situation, config: CompanionConfig) -> Event:
+def _event_of(order: Order, phase: Phase, s: Situation, config: CompanionConfig, *, may_turn: bool) -> Event:
     event = _EVENTS[order.command]
     is_start = event is Event.START
-    stands = (
-        not s.autopilot.armed or phase is Phase.ON_DECK or (phase is Phase.LIFT_OFF and has_not_left_deck(s, config))
-    )
+    stands = not may_turn or phase is Phase.ON_DECK or (phase is Phase.LIFT_OFF and has_not_left_deck(s, config))
     if phase in (Phase.TAKEOFF, Phase.ON_DECK, Phase.LIFT_OFF) and event in (Event.ABORT, Event.HOLD) and stands:
         return Event.CALLED_OFF  # on the ground there is nothing to hold
     if phase is Phase.HOLD and is_start and not _flies(s):

@@ -154,7 +154,8 @@ def _time_to_contact_s(relative: Approach, limits: FlightLimits, descent: Descen
 
 def news(before: Progress, now: Progress) -> str | None:
     """Return what the pilot is told of this step, None when there is nothing new."""
-    if now.phase is not before.phase:
+    is_explained = now.phase is Phase.PILOT and now.cause.reason is not before.cause.reason
+    if now.phase is not before.phase or is_explained:
         return f"{now.phase.value}: {sentence(now.cause)}"
     told = now.obstacle
     is_new = told is not None and (before.obstacle is None or before.obstacle.reason is not told.reason)

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from companion.autopilots.messages import is_arming
 from companion.config.companion import CompanionConfig
 from companion.core.reasons import Cause, Reason, same_or_new
 from companion.landing.commands import answer
@@ -51,7 +52,8 @@ def take_events(
         known = obstacle(progress.held, situation, config)
         order = Order(command=inputs.command, station=inputs.station)
         due = way_home_due(memory.sortie, situation, config)
-        event, reply = answer(order, progress.phase, situation, config, known, called_home=due)
+        arms = is_arming(memory.control.driver, situation.monotonic_ns)
+        event, reply = answer(order, progress.phase, situation, config, known, called_home=due, is_arming=arms)
         if event is not None:
             memory = _enter(memory, event, _COMMANDED[inputs.command], situation, config)
         if reply.accepted:
@@ -71,7 +73,17 @@ def take_events(
     if decision is not None:
         decision = stay_out(memory.sortie, memory.progress, decision)
         memory = _enter(memory, *decision, situation, config)
-    return _update_control(memory, inputs), reply
+    return _update_control(_learn_of_restart(memory, inputs), inputs), reply
+
+
+def _learn_of_restart(memory: StepMemory, inputs: StepInputs) -> StepMemory:
+    """Say that motors which had stopped did so by a restart, once the autopilot's clock has told of it."""
+    progress = memory.progress
+    if progress.phase is not Phase.PILOT or progress.cause.reason is not Reason.DISARMED:
+        return memory
+    if not inputs.autopilot.restarted:
+        return memory
+    return replace(memory, progress=replace(progress, cause=Cause(Reason.AUTOPILOT_RESTARTED)))
 
 
 def _update_control(memory: StepMemory, inputs: StepInputs) -> StepMemory:

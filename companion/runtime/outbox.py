@@ -20,8 +20,11 @@ class Publishes(Protocol):
 
 
 def outbox(session: Publishes) -> Recorder:
-    """Return what publishes each `Publication` that is put into it by the session, in order; further ones it drops."""
-    return BackgroundRecorder(_Sink(session), capacity=_CAPACITY)
+    """Return what publishes each `Publication` that is put into it by the session, in order.
+
+    Where too many wait it drops the oldest: who looks again wants to know what is now.
+    """
+    return BackgroundRecorder(_Sink(session), capacity=_CAPACITY, keeps_newest=True)
 
 
 class _Sink:

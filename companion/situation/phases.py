@@ -111,6 +111,8 @@ TRANSITIONS: dict[tuple[Phase, Event], Phase] = {
     (Phase.TAKEOFF, Event.REFUSED): Phase.IDLE,
     (Phase.TAKEOFF, Event.CALLED_OFF): Phase.IDLE,
     (Phase.TAKEOFF, Event.CARRIED_OFF): Phase.TOUCHDOWN,
+    (Phase.HOLD, Event.CALLED_OFF): Phase.IDLE,
+    (Phase.TOUCHDOWN, Event.CALLED_OFF): Phase.IDLE,
     (Phase.WAITING, Event.VEHICLE_PASSES): Phase.CHASE,
     (Phase.CHASE, Event.OVER_PAD): Phase.ALIGN,
     (Phase.ALIGN, Event.ALIGNED): Phase.DESCEND,

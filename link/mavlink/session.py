@@ -85,6 +85,10 @@ class MavlinkSession:
         """Systems of autopilots that were heard and are not the target."""
         return frozenset(self._peer.others)
 
+    def is_id_shared(self, t_ns: int) -> bool:
+        """Whether two autopilots answer as the target, at local time `t_ns`."""
+        return self._clock_sync.shared_id.is_shared(t_ns)
+
     @property
     def autopilot(self) -> int | None:
         """MAV_AUTOPILOT of its heartbeat, None before the first one."""
@@ -195,8 +199,10 @@ class MavlinkSession:
         return self._peer.take_requests()
 
     def _take(self, message: Message, t_ns: int) -> list[Event]:
+        if is_accepted := self._peer.accepts(message):
+            self._clock_sync.shared_id.hear(message, t_ns)
         boot_ns = boot_time_ns(message, self.clock.local_to_boot_ns(t_ns))
-        if not self._peer.accepts(message) or (boot_ns and self._restarts.doubts(boot_ns, t_ns, self.clock)):
+        if not is_accepted or (boot_ns and self._restarts.doubts(boot_ns, t_ns, self.clock)):
             self._filtered += 1
             return []
         events = self._peer.heard(message, t_ns)
@@ -205,17 +211,13 @@ class MavlinkSession:
         if boot_ns and self._restarts.is_behind:
             self._filtered += 1
             return events
-        events.append(MessageReceived(message, t_ns))
-        return [*events, *self._handle(message, t_ns)]
+        return [*events, MessageReceived(message, t_ns), *self._handle(message, t_ns)]
 
     def _handle(self, message: Message, t_ns: int) -> list[Event]:
         message_id = message.get_msgId()
         self._streams.seen(message_id, t_ns)
-        if message_id == mavlink.MAVLINK_MSG_ID_TIMESYNC:
-            if (answer := self._clock_sync.timesync(message, t_ns)) is not None:
-                self.send(answer)
-        elif message_id == mavlink.MAVLINK_MSG_ID_SYSTEM_TIME:
-            self._clock_sync.system_time(message)
+        if (answer := self._clock_sync.hear(message, t_ns)) is not None:
+            self.send(answer)
         elif message_id == mavlink.MAVLINK_MSG_ID_COMMAND_ACK:
             event = self._commands.acknowledged(message, t_ns)
             self._streams.acknowledged(event)
@@ -244,6 +246,5 @@ class MavlinkSession:
             self.send(command_message(target, command, params, confirmation))
 
     def _send_parameter_request(self, name: str) -> None:
-        target = self._peer.target_system_id
-        if target is not None:
+        if (target := self._peer.target_system_id) is not None:
             self.send(parameter_question(target, name))

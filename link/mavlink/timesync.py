@@ -6,6 +6,7 @@ Source: MAVLink time synchronization protocol v2, https://mavlink.io/en/services
 from link.mavlink.clock_config import ClockConfig
 from link.mavlink.clock_map import UNIX_TIME_MIN_NS, ClockMap, RoundTrip, with_round_trip, with_system_time
 from link.mavlink.dialect import Message, mavlink
+from link.mavlink.shared_id import SharedIdWatch
 from link.mavlink.timer import Timer
 
 _FAST_PERIOD_NS = 100_000_000
@@ -62,6 +63,8 @@ class ClockSync:
         self._timer = Timer(_FAST_PERIOD_NS)
         self._fast_left = _FAST_COUNT
         self._asked_ns: dict[int, None] = {}
+        self.shared_id = SharedIdWatch()
+        """Hears every TIMESYNC of the autopilot's address, those of a clock that is not followed as well."""
 
     def poll(self, t_ns: int) -> Message | None:
         """The next question, when it is time for one."""
@@ -73,7 +76,16 @@ class ClockSync:
         self._asked_ns[t_ns] = None
         if len(self._asked_ns) > _ASKED_MAX:
             del self._asked_ns[next(iter(self._asked_ns))]
+        self.shared_id.ask(t_ns)
         return mavlink.MAVLink_timesync_message(tc1=0, ts1=t_ns)
+
+    def hear(self, message: Message, t_ns: int) -> Message | None:
+        """Takes any message; returns the answer to one that asks for the time."""
+        if message.get_msgId() == mavlink.MAVLINK_MSG_ID_TIMESYNC:
+            return self.timesync(message, t_ns)
+        if message.get_msgId() == mavlink.MAVLINK_MSG_ID_SYSTEM_TIME:
+            self.system_time(message)
+        return None
 
     def timesync(self, message: Message, t_ns: int) -> Message | None:
         """Takes a TIMESYNC: an answer to us is learned from, a question gets the answer returned here."""

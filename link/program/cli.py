@@ -4,7 +4,6 @@ Kept light, so that `--help` is quick: no numerics and no Zenoh are imported her
 """
 
 import errno
-import io
 import os
 import sys
 import threading
@@ -107,8 +106,6 @@ def run_app(name: str, app: App, args: Sequence[str] | None = None) -> int:
         0, the function's own code, 2 after a mistake of the user, 130 after Ctrl-C.
     """
     collect_rarely()
-    if sys.stdout is None:  # closed by who started it
-        sys.stdout = io.StringIO()
     command = command_of(app)
     arguments: list[str] = []
     try:

@@ -7,6 +7,7 @@ from importlib import import_module
 
 from link.program.exit_codes import EXIT_INTERRUPTED
 from link.program.interrupts import EndingAtOnce, take_interrupts
+from link.program.standard_files import open_standard_files
 
 
 def start(name: str, module: str) -> None:
@@ -16,6 +17,7 @@ def start(name: str, module: str) -> None:
         name: the program's.
         module: holds its `app`.
     """
+    open_standard_files()
     take_interrupts(name)
     codes: list[int] = []
     atexit.register(_keep_interrupted, codes)  # the first, so it is called last

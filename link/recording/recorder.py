@@ -74,12 +74,21 @@ class BackgroundRecorder:
         sink: used by that thread only.
         capacity: records that wait at most; further ones are dropped.
         pause: gives the interpreter away after each record.
+        keeps_newest: drop the oldest that waits in place of a further one.
     """
 
-    def __init__(self, sink: Sink, *, capacity: int = _CAPACITY, pause: Callable[[float], None] = time.sleep) -> None:
+    def __init__(
+        self,
+        sink: Sink,
+        *,
+        capacity: int = _CAPACITY,
+        pause: Callable[[float], None] = time.sleep,
+        keeps_newest: bool = False,
+    ) -> None:
         self._sink = sink
         self._capacity = capacity
         self._pause = pause
+        self._keeps_newest = keeps_newest
         self._waiting: deque[Any] = deque()
         self._closing = threading.Event()
         self._dropped_full = 0
@@ -100,10 +109,12 @@ class BackgroundRecorder:
 
     def put(self, record: Any) -> None:
         """Take one record."""
-        if len(self._waiting) < self._capacity:
-            self._waiting.append(record)
-        else:
+        if len(self._waiting) >= self._capacity:
             self._dropped_full += 1
+            if not self._keeps_newest:
+                return
+            self._waiting.popleft()  # the thread takes one at a time, so that a full queue never becomes empty here
+        self._waiting.append(record)
 
     def close(self) -> None:
         """Write what is left; a disk that takes longer than five seconds is not waited for."""

@@ -2,6 +2,7 @@
 
 import json
 import re
+from itertools import accumulate
 from pathlib import Path
 from typing import TypedDict
 
@@ -23,6 +24,9 @@ _TLS = "transport/link/tls/"
 _WAYS, _ENCRYPTED = ("listen", "connect"), ("tls/", "quic/", "wss/")
 _TLS_FILES = ("root_ca_certificate", *(f"{way}_{file}" for way in _WAYS for file in ("private_key", "certificate")))
 _JSON5_PLACE = re.compile(r"-->\s*(\d+):(\d+)")
+
+_BRACKETS_MAX = 100
+"""Zenoh's own configuration has seven; deep ones end its parser, and with it the program, without a word."""
 
 _MESSAGE_MAX_KEY = "transport/link/rx/max_message_size"
 
@@ -126,6 +130,8 @@ def _config_from_file(path: Path) -> zenoh.Config:
         text = read_text(path)
     except UserError as error:
         raise UserError(f"--zenoh-config {error}") from None
+    if _brackets_deep(text) > _BRACKETS_MAX:
+        raise UserError(f"--zenoh-config {path}: nested too deep; no setting of Zenoh's is")
     try:
         return zenoh.Config.from_json5(text)
     except zenoh.ZError as error:
@@ -134,6 +140,12 @@ def _config_from_file(path: Path) -> zenoh.Config:
             raise UserError(f"--zenoh-config {path}: {_plain(str(error))}") from error
         where = f"from line {place[1]}, column {place[2]} on"
         raise UserError(f"--zenoh-config {path}: no valid JSON5 {where}; check commas, colons and brackets") from error
+
+
+def _brackets_deep(text: str) -> int:
+    """Return how deep the brackets of a text are, those in its comments counted as well."""
+    steps = ((one in "{[") - (one in "}]") for one in text)
+    return max(accumulate(steps), default=0)
 
 
 def _check_tls_files(config: zenoh.Config, config_file: Path | None) -> None:

@@ -46,6 +46,33 @@ def test_pilots_mode_change_stops_setpoints_in_the_same_step_and_for_good(phase:
     assert flight.phase is Phase.PILOT
 
 
+@pytest.mark.parametrize("phase", [phase for phase in FLYING if phase not in (Phase.TOUCHDOWN, Phase.ON_DECK)])
+def test_restart_that_begins_with_another_mode_and_motors_off_is_said_to_be_one(phase: Phase) -> None:
+    flight = reached(phase)
+    flight.view = replace(flight.view, in_control=False, disarm_told=True)
+    assert flight.step().setpoint is None
+    assert (flight.phase, flight.reason) == (Phase.PILOT, Reason.DISARMED)
+    flight.view = replace(flight.view, armed=False, restarted=True)
+    text = flight.step().text
+    assert flight.reason is Reason.AUTOPILOT_RESTARTED
+    assert text is not None
+    assert Reason.AUTOPILOT_RESTARTED.value in text
+    assert flight.step().text is None
+
+
+@pytest.mark.parametrize("is_off", [True, False])
+def test_mode_that_changes_as_the_motors_are_switched_off_on_the_pad_is_the_pilots_only_if_they_run(
+    *, is_off: bool
+) -> None:
+    flight = reached(Phase.TOUCHDOWN)
+    flight.view = replace(flight.view, in_control=False, disarm_told=True)
+    flight.step()
+    assert flight.phase is Phase.TOUCHDOWN
+    flight.view = replace(flight.view, armed=not is_off, disarm_told=is_off)
+    flight.step()
+    assert flight.phase is (Phase.SECURED if is_off else Phase.PILOT)
+
+
 @pytest.mark.slow
 def test_pilots_mode_change_before_the_motors_turn_counts_as_well() -> None:
     flight = Flight(refuses=frozenset({DISARM}))

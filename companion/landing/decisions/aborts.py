@@ -7,6 +7,7 @@ from companion.config.companion import CompanionConfig
 from companion.config.planning import LandingStyle
 from companion.core.data import GRAVITY_M_S2
 from companion.core.reasons import Cause, Reason
+from companion.integrity.frames import tell_unseen
 from companion.integrity.heights import is_seen_too_near
 from companion.integrity.sightings import do_sightings_disagree, is_seen_elsewhere
 from companion.integrity.stamps import have_stamps_stepped, is_stamped_ahead
@@ -184,7 +185,7 @@ ABORTS = (
         phases=frozenset({Phase.CHASE}),
         is_true=_is_over_unseen_pad,
         hold_s=lambda _, c: c.chase.unseen_hold_s,
-        cause=lambda _, c: Cause(Reason.OFFSET_UNKNOWN if c.silent_vehicle is None else Reason.PAD_NOT_SEEN),
+        cause=lambda _, c: tell_unseen(c),
     ),
     Condition(reason=Reason.VEHICLE_LINK_LOST, phases=LANDING_PHASES, is_true=is_token_lost),
     Condition(

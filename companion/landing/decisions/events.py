@@ -2,7 +2,7 @@
 
 import math
 
-from companion.autopilots.messages import was_asked_to_arm
+from companion.autopilots.messages import is_arming, was_asked_to_arm
 from companion.config.companion import CompanionConfig
 from companion.config.planning import LandingStyle
 from companion.core.reasons import Cause, Reason
@@ -61,7 +61,7 @@ def decide(progress: Progress, control: ControlMemory, s: Situation, config: Com
     broken_off = _unsafe(_COMMITTED if committed else ABORTS, s, progress.held, config) if is_landing else None
     if broken_off is None and not committed:
         broken_off = _time_limit(progress, control, s, config)
-    return _go_on(progress, s, config) if broken_off is None else broken_off
+    return _go_on(progress, control, s, config) if broken_off is None else broken_off
 
 
 def _unsafe(conditions: tuple[Condition, ...], s: Situation, held: Held, config: CompanionConfig) -> Decision | None:
@@ -71,7 +71,7 @@ def _unsafe(conditions: tuple[Condition, ...], s: Situation, held: Held, config:
     return None
 
 
-def _go_on(progress: Progress, s: Situation, config: CompanionConfig) -> Decision | None:
+def _go_on(progress: Progress, control: ControlMemory, s: Situation, config: CompanionConfig) -> Decision | None:
     """Return the landing's own next event; a vehicle out of reach is waited beside, not chased."""
     if progress.phase is Phase.WAITING and obstacle(progress.held, s, config) is not None:
         return None
@@ -82,7 +82,7 @@ def _go_on(progress: Progress, s: Situation, config: CompanionConfig) -> Decisio
             return Event.UNSAFE if is_unsafe else event, cause_of(condition, s, config)
     if progress.phase is Phase.WAITING and not holds(DRIVES, progress.held, s, config):
         return None
-    return _advance(progress, s, config)
+    return _advance(progress, control, s, config)
 
 
 def _is_committed(s: Situation, config: CompanionConfig) -> bool:
@@ -101,15 +101,22 @@ def _find_taken_control(phase: Phase, control: ControlMemory, s: Situation) -> D
         return None
     if s.autopilot.failsafe or s.autopilot.overruled:
         return Event.PILOT_TOOK_OVER, Cause(Reason.AUTOPILOT_FAILSAFE)
-    if phase is Phase.TOUCHDOWN and not s.autopilot.armed:
+    is_off_told = s.autopilot.disarm_told or not s.autopilot.armed
+    if phase is Phase.TOUCHDOWN and is_off_told:
         return None  # as wanted; a mode that changes with it is not the pilot's
     if not s.autopilot.in_control:
-        restarted = s.autopilot.restarted
-        return Event.PILOT_TOOK_OVER, Cause(Reason.AUTOPILOT_RESTARTED if restarted else Reason.MODE_CHANGED)
+        return Event.PILOT_TOOK_OVER, Cause(_why_not_in_control(control, s, is_off_told=is_off_told))
     # On a deck, too: a person did it, or the autopilot's time was over, and nobody expects the motors to start again.
     if control.was_armed and not s.autopilot.armed:
         return Event.PILOT_TOOK_OVER, Cause(Reason.DISARMED)
     return None
+
+
+def _why_not_in_control(control: ControlMemory, s: Situation, *, is_off_told: bool) -> Reason:
+    """Return why another mode is flown: one that comes with motors that have stopped is no pilot's choice."""
+    if s.autopilot.restarted:
+        return Reason.AUTOPILOT_RESTARTED
+    return Reason.DISARMED if control.was_armed and is_off_told else Reason.MODE_CHANGED
 
 
 TOO_LONG = {
@@ -160,7 +167,7 @@ def _longest_s(phase: Phase, config: CompanionConfig) -> float | None:
             return None
 
 
-def _advance(progress: Progress, s: Situation, config: CompanionConfig) -> Decision | None:
+def _advance(progress: Progress, control: ControlMemory, s: Situation, config: CompanionConfig) -> Decision | None:
     match progress.phase:
         case Phase.TAKEOFF:
             return _at_waiting_point(s, config)
@@ -169,9 +176,9 @@ def _advance(progress: Progress, s: Situation, config: CompanionConfig) -> Decis
         case Phase.CHASE:
             return _over_pad(s, config)
         case Phase.TOUCHDOWN:
-            return _on_the_pad(s, progress.held, config)
-        case Phase.ABORT:
-            return end_climb(progress, s, config)
+            return _motors_off(progress, control, s) if not s.autopilot.armed else _on_the_pad(s, progress.held, config)
+        case Phase.HOLD | Phase.ABORT as phase:
+            return end_climb(progress, s, config) if phase is Phase.ABORT else _never_armed(progress, control, s)
         case _:
             return None
 
@@ -194,9 +201,22 @@ def _over_pad(s: Situation, config: CompanionConfig) -> Decision | None:
     return None
 
 
+def _motors_off(progress: Progress, control: ControlMemory, s: Situation) -> Decision | None:
+    """Return the end of a landing, or of a take-off that the vehicle has carried off, once no motor can turn."""
+    if is_arming(control.driver, s.monotonic_ns):
+        return None
+    if progress.cause.reason is Reason.RIDES_ALONG:
+        return Event.CALLED_OFF, progress.cause
+    return Event.MOTORS_OFF, Cause(Reason.MOTORS_OFF)
+
+
+def _never_armed(progress: Progress, control: ControlMemory, s: Situation) -> Decision | None:
+    """Return that a take-off is called off whose order to arm was under way when it was to be held, and failed."""
+    may_turn = s.autopilot.armed or control.was_armed or is_arming(control.driver, s.monotonic_ns)
+    return None if may_turn or s.autopilot.landed is False else (Event.CALLED_OFF, progress.cause)
+
+
 def _on_the_pad(s: Situation, held: Held, config: CompanionConfig) -> Decision | None:
-    if not s.autopilot.armed:
-        return Event.MOTORS_OFF, Cause(Reason.MOTORS_OFF)
     relative = s.approach
     is_lost = relative is not None and relative.height_m > config.touchdown.lost.height_m
     if relative is not None and (is_lost or holds(LIFTED, held, s, config)):

@@ -32,6 +32,7 @@ SPEED_SHARE_MIN = 1.15
 _RECEIVER_TOLD_S = 3.0  # it says so once a second
 _TOLD_M = 0.1  # what heights are told to
 _ROUNDING = 1e-6
+_BEFORE_AN_ARMING = frozenset({Phase.IDLE, Phase.SECURED, Phase.PILOT})
 _BEFORE_A_FLIGHT = frozenset({Phase.IDLE, Phase.SECURED, Phase.PILOT, Phase.HOLD, Phase.WAITING})
 _BEFORE_A_CHASE = _BEFORE_A_FLIGHT | {Phase.ABORT}
 _BEFORE_A_RETRY = frozenset({Phase.WAITING, Phase.HOLD, Phase.ABORT})
@@ -124,6 +125,10 @@ def _tell_stamped_late(s: Situation, _: CompanionConfig) -> Cause:
     return Cause(Reason.STAMPS_LATE, (s.vehicle.fix_age_on_arrival_s or 0.0,))
 
 
+def _is_id_shared(s: Situation, _: CompanionConfig) -> bool:
+    return s.autopilot.is_id_shared
+
+
 def _is_warned(s: Situation, _: CompanionConfig) -> bool:
     return s.autopilot.warns
 
@@ -172,6 +177,7 @@ def _high(s: Situation, c: CompanionConfig) -> Cause:
 # An estimate that has just begun jumps: what is said of the vehicle must hold for a while.
 OBSTACLES = (
     Condition(reason=Reason.DRONE_TAKEN, phases=_BEFORE_ANY_CHASE, is_true=is_drone_taken),
+    Condition(reason=Reason.SYSTEM_ID_SHARED, phases=_BEFORE_AN_ARMING, is_true=_is_id_shared),
     Condition(reason=Reason.VEHICLE_TAKEN, phases=_BEFORE_ANY_CHASE, is_true=is_vehicle_taken, cause=tell_taken),
     Condition(
         reason=Reason.STAMPS_AHEAD,

@@ -69,11 +69,9 @@ CARRIED_OFF = Condition(
 def call_off(held: Held, control: ControlMemory, s: Situation, config: CompanionConfig) -> Decision | None:
     """Return the end of a take-off from a vehicle that has driven off, with the motors off.
 
-    Motors that were just asked for may turn although nothing has told so yet: that is waited for.
+    Motors that were just asked for may turn although nothing has told so yet.
     """
     if not holds(CARRIED_OFF, held, s, config):
         return None
-    if s.autopilot.armed:
-        return Event.CARRIED_OFF, cause_of(CARRIED_OFF, s, config)
-    is_settled = not is_arming(control.driver, s.monotonic_ns)
-    return (Event.CALLED_OFF, cause_of(CARRIED_OFF, s, config)) if is_settled else None
+    may_turn = s.autopilot.armed or is_arming(control.driver, s.monotonic_ns)
+    return Event.CARRIED_OFF if may_turn else Event.CALLED_OFF, cause_of(CARRIED_OFF, s, config)

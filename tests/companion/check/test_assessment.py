@@ -60,6 +60,7 @@ def test_everything_in_order_is_all_pass() -> None:
         ({"autopilot_id": mavlink.MAV_AUTOPILOT_GENERIC}, "firmware", Level.FAIL),
         ({"version": (1, 12, 3)}, "firmware", Level.WARN),
         ({"version": None}, "firmware", Level.WARN),
+        ({"is_id_shared": True}, "system id", Level.FAIL),
         ({"can_arm": False}, "arming checks", Level.WARN),
         ({"has_origin": False}, "estimator", Level.FAIL),
         ({"has_position": False}, "estimator", Level.FAIL),

@@ -7,12 +7,15 @@ from hypothesis import strategies as st
 
 from companion.autopilots.driver import Receiver
 from companion.autopilots.frame_moves import NO_MOVES, FrameMoves
-from companion.config.integrity import ReceiverFrames
+from companion.config.companion import CompanionConfig
+from companion.config.integrity import IntegrityConfig, ReceiverFrames
 from companion.core.data import FIXED_STD_MAX_M, Measurement, Quantity
+from companion.core.reasons import sentence
 from companion.integrity.frames import (
     FixedPhases,
     are_frames_one,
     has_lost_fix,
+    tell_unseen,
     update_fixed_phases,
     with_place_step,
     without_place_step,
@@ -275,3 +278,11 @@ def test_lost_fix_takes_what_sightings_have_told_until_others_agree() -> None:
     assert lost.sightings == SightingWatch(was_confirmed=True)
     again = replace(lost, sightings=confirmed)
     assert update_vehicle(again, replace(inputs, autopilot=view), flight.system).sightings.is_confirmed
+
+
+@pytest.mark.parametrize(("configured", "useless"), [(ReceiverFrames.ONE, "--receiver-frames"), (AUTO, "frames auto")])
+def test_unseen_pad_is_told_with_no_setting_that_is_set_already(configured: ReceiverFrames, useless: str) -> None:
+    config = CompanionConfig(integrity=IntegrityConfig(receiver_frames=configured))
+    told = sentence(tell_unseen(config))
+    assert "use a pattern detector" in told
+    assert useless not in told

@@ -326,6 +326,8 @@ def test_a_configuration_file_is_used_and_options_go_before_it(tmp_path: Path, e
         ("{mode: 'peer', nonsense: 3}", "unknown field `nonsense`"),
         ("{mode: ", "line 1, column 8"),
         ("{mode: 'pear'}", "pear"),
+        ("{a:" * 50_000 + "1" + "}" * 50_000, "nested too deep"),
+        ("[" * 200_000, "nested too deep"),
     ],
 )
 def test_a_wrong_configuration_file_is_the_users_mistake(tmp_path: Path, text: str, expected: str) -> None:

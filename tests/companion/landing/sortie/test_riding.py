@@ -4,15 +4,16 @@ import numpy as np
 import pytest
 
 from companion.autopilots.driver import DriverMemory
-from companion.autopilots.messages import ASK_AGAIN_S, arm
+from companion.autopilots.messages import ARMED_TOLD_S, arm
 from companion.core.reasons import Reason
+from companion.landing.decisions.events import decide
 from companion.landing.sortie.riding import CARRIED_OFF, call_off
 from companion.landing.state.memory import ControlMemory
 from companion.situation.phases import Event, Phase
 from companion.situation.situation import Situation
 from link.messages import Command
 from link.records import replace
-from tests.companion.facts import CONFIG, IN_CONTROL, NOW_NS, changed, pad_at, situation
+from tests.companion.facts import CONFIG, IN_CONTROL, NOW_NS, changed, pad_at, progress, situation
 from tests.companion.world import DISARM, GEAR_M, START_NS, KnownVehicle, on_deck, own_state
 
 VAGUE_M = 2.0
@@ -62,11 +63,26 @@ def test_take_off_of_a_drone_that_is_carried_off_for_long_enough_is_called_off(e
     assert call_off({Reason.RIDES_ALONG: NOW_NS}, IN_CONTROL, facts, CONFIG) is None
 
 
-@pytest.mark.parametrize(("ago_s", "is_settled"), [(0.5 * ASK_AGAIN_S, False), (ASK_AGAIN_S, True)])
-def test_motors_that_were_just_asked_for_are_waited_for(ago_s: float, *, is_settled: bool) -> None:
-    asked = DriverMemory(asked_ns={arm(armed=True): NOW_NS - round(ago_s * 1e9)})
-    decision = call_off(LONG_HELD, ControlMemory(driver=asked), carried(1.5, 1.4, armed=False), CONFIG)
-    assert (decision is not None) is is_settled
+ARMING = [(0.0, True), (0.9 * ARMED_TOLD_S, True), (ARMED_TOLD_S, False)]
+
+
+def asked_to_arm(ago_s: float) -> ControlMemory:
+    return ControlMemory(driver=DriverMemory(asked_ns={arm(armed=True): NOW_NS - round(ago_s * 1e9)}))
+
+
+@pytest.mark.parametrize(("ago_s", "may_turn"), ARMING)
+def test_motors_that_were_just_asked_for_are_stopped_as_if_they_turned(ago_s: float, *, may_turn: bool) -> None:
+    decision = call_off(LONG_HELD, asked_to_arm(ago_s), carried(1.5, 1.4, armed=False), CONFIG)
+    assert decision is not None
+    assert decision[0] is (Event.CARRIED_OFF if may_turn else Event.CALLED_OFF)
+
+
+@pytest.mark.parametrize(("ago_s", "may_turn"), ARMING)
+def test_motors_that_were_just_asked_for_are_not_taken_for_off(ago_s: float, *, may_turn: bool) -> None:
+    now = progress(Phase.TOUCHDOWN, 0.1)
+    decision = decide(now, asked_to_arm(ago_s), carried(0.1, 0.1, armed=False), CONFIG)
+    assert (decision is None) is may_turn
+    assert decision is None or decision[0] is Event.MOTORS_OFF
 
 
 def test_take_off_ends_on_the_vehicle_that_drives_off_with_the_motors_off() -> None:
@@ -85,3 +101,5 @@ def test_take_off_ends_on_the_vehicle_that_drives_off_with_the_motors_off() -> N
     assert drives
     assert (flight.phase, flight.reason) == (Phase.TOUCHDOWN, Reason.RIDES_ALONG)
     assert flight.told(DISARM)[-1][2] == 0.0
+    flight.run(ARMED_TOLD_S)
+    assert (flight.phase, flight.reason) == (Phase.IDLE, Reason.RIDES_ALONG)

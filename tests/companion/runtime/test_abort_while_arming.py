@@ -1,0 +1,57 @@
+"""An abort or a hold that comes while the order to arm is under way: no motors turn that nobody flies."""
+
+import pytest
+
+from companion.situation.phases import Phase
+from link.mavlink.dialect import mavlink
+from link.messages import Command
+from tests.companion.peer import Setup
+from tests.companion.runtime.setups import ready
+
+ARM = mavlink.MAV_CMD_COMPONENT_ARM_DISARM
+ENDS = [Command.ABORT, Command.HOLD]
+
+
+def started(results: dict[int, tuple[int, ...]]) -> Setup:
+    """A node whose order to arm has just reached the autopilot, which has told nothing of it yet."""
+    setup = ready()
+    setup.autopilot.results = results
+    setup.node.request(Command.START)
+    for _ in range(1000):
+        if any(message.param1 == 1.0 for message in setup.autopilot.commands(ARM)):
+            break
+        setup.run(0.005)
+    assert not setup.node.autopilot.state.view.armed
+    setup.node.take_replies()
+    return setup
+
+
+@pytest.mark.parametrize("command", ENDS)
+@pytest.mark.parametrize("later_s", [0.0, 0.3])
+def test_drone_that_arms_after_the_abort_is_held_and_not_left_alone(command: Command, later_s: float) -> None:
+    setup = started({})
+    setup.run(later_s)
+    setup.node.request(command)
+    setup.run(4.0)
+    assert [reply.accepted for reply in setup.node.take_replies()] == [True]
+    assert setup.autopilot.armed
+    assert setup.node.phase is Phase.HOLD
+    sent = len(setup.autopilot.setpoints())
+    setup.run(1.0)
+    assert len(setup.autopilot.setpoints()) - sent > 40
+    assert len(setup.autopilot.commands(ARM)) == 1
+
+
+@pytest.mark.parametrize("command", ENDS)
+@pytest.mark.parametrize("answers", [(mavlink.MAV_RESULT_DENIED,), ()])
+def test_take_off_whose_order_to_arm_fails_after_the_abort_is_called_off(
+    command: Command, answers: tuple[int, ...]
+) -> None:
+    setup = started({ARM: answers})
+    setup.node.request(command)
+    setup.run(4.0)
+    assert not setup.autopilot.armed
+    assert setup.node.phase is Phase.IDLE
+    sent = len(setup.autopilot.setpoints())
+    setup.run(1.0)
+    assert len(setup.autopilot.setpoints()) == sent
