@@ -6,7 +6,6 @@ from link.compiled import file_digest, kept_kernel
 
 FILES = (
     "axis_qp.py",
-    "constraints.py",
     "descent_path.py",
     "envelope.py",
     "horizon.py",
@@ -15,6 +14,6 @@ FILES = (
     "qp.py",
     "resample.py",
 )
-"""All that compiled functions of this package are in, or take constants from: they call each other across them."""
+"""All that compiled functions of this package are in: they call each other across them."""
 
 compiled_kernel = kept_kernel(file_digest(Path(__file__).with_name(name) for name in FILES))

@@ -4,38 +4,15 @@ Variables: the jerk of each block, of the major axis and then of the minor one, 
 >= 0 each for speed, acceleration and, in the vertical programme, height, with an exact penalty. The jerk's bounds are
 hard, all others soft: with finite numbers a programme is always feasible.
 
-A norm `|w| <= c` of both horizontal axes is a polygon: `n w <= b` along `DIRECTIONS` unit vectors n, both ways. The
-polygons of acceleration and jerk are inscribed in the circle, corners on the axes: an axis may use the whole norm, no
-direction more. The polygon of the speed is about the circle, its sides on the axes, so that nothing of a speed that the
-drone already has must be given up as the axes turn.
+What `envelope` says of norms is along unit vectors, both ways.
 """
-
-import math
 
 import numpy as np
 from scipy.linalg import block_diag
 
 from companion.core.data import Array
 from companion.planning.axis_qp import AxisCost, AxisModel
-
-DIRECTIONS = 8
-"""Of a polygon with twice as many sides: an inscribed one is 1.9 % within its circle at most."""
-
-INSCRIBED = math.cos(0.5 * math.pi / DIRECTIONS)
-"""How near the sides of the inscribed polygon are, of the radius."""
-
-SPEED_NORMALS = np.stack(
-    [(math.cos(k * math.pi / DIRECTIONS), math.sin(k * math.pi / DIRECTIONS)) for k in range(DIRECTIONS)]
-)
-"""(d, 2) of the polygon of the speed."""
-
-PUSH_NORMALS = np.stack(
-    [
-        (math.cos((k + 0.5) * math.pi / DIRECTIONS), math.sin((k + 0.5) * math.pi / DIRECTIONS))
-        for k in range(DIRECTIONS)
-    ]
-)
-"""(d, 2) of those of acceleration and jerk."""
+from companion.planning.envelope import PUSH_NORMALS, SPEED_NORMALS
 
 LEVEL_SLACKS, VERTICAL_SLACKS = 2, 3
 

@@ -4,7 +4,12 @@ Bounds are widened just enough for such a state to come back as fast as it can. 
 that is left when acceleration is turned against the velocity with nearly all of the jerk and then held at nearly all of
 the acceleration limit; the widened acceleration bound falls with the jerk; the lowered floor is the height reached by
 pulling up likewise, at no more than the climb limit. The floor bounds the height that the rate carries on: what sinks
-slows down towards it. All functions are compiled.
+slows down towards it.
+
+A norm `|w| <= c` of both horizontal axes is a polygon: `n w <= b` along `DIRECTIONS` unit vectors n, both ways. The
+polygons of acceleration and jerk are inscribed in the circle, corners on the axes: an axis may use the whole norm, no
+direction more. The polygon of the speed is about the circle, its sides on the axes, so that nothing of a speed that the
+drone already has must be given up as the axes turn. All functions are compiled.
 """
 
 import math
@@ -13,9 +18,27 @@ import numpy as np
 
 from companion.core.data import Array
 from companion.planning.compiled import compiled_kernel
-from companion.planning.constraints import INSCRIBED, PUSH_NORMALS, SPEED_NORMALS
 
 Bounds = tuple[Array, Array]  # the lower and the upper ones of a programme's rows, written in place
+
+DIRECTIONS = 8
+"""Of a polygon with twice as many sides: an inscribed one is 1.9 % within its circle at most."""
+
+INSCRIBED = math.cos(0.5 * math.pi / DIRECTIONS)
+"""How near the sides of the inscribed polygon are, of the radius."""
+
+SPEED_NORMALS = np.stack(
+    [(math.cos(k * math.pi / DIRECTIONS), math.sin(k * math.pi / DIRECTIONS)) for k in range(DIRECTIONS)]
+)
+"""(d, 2) of the polygon of the speed."""
+
+PUSH_NORMALS = np.stack(
+    [
+        (math.cos((k + 0.5) * math.pi / DIRECTIONS), math.sin((k + 0.5) * math.pi / DIRECTIONS))
+        for k in range(DIRECTIONS)
+    ]
+)
+"""(d, 2) of those of acceleration and jerk."""
 
 AUTHORITY = 0.98
 """Share of the limits that the way back uses, so that the solver has room to follow it."""

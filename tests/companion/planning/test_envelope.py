@@ -9,15 +9,8 @@ import pytest
 from companion.config.planning import MpcConfig
 from companion.core.data import Array
 from companion.planning.axis_qp import make_axis_cost, make_axis_model, slopes_of
-from companion.planning.constraints import (
-    DIRECTIONS,
-    INSCRIBED,
-    LEVEL_SLACKS,
-    VERTICAL_SLACKS,
-    level_rows,
-    vertical_rows,
-)
-from companion.planning.envelope import braked, level_bounds, vertical_bounds
+from companion.planning.constraints import LEVEL_SLACKS, VERTICAL_SLACKS, level_rows, vertical_rows
+from companion.planning.envelope import DIRECTIONS, INSCRIBED, braked, level_bounds, vertical_bounds
 
 CONFIG = MpcConfig()
 MODEL = make_axis_model(np.array(CONFIG.moves_s), CONFIG.node_spacing_max_s)

@@ -238,7 +238,7 @@ def test_deck_that_comes_up_is_seen_to_where_the_vehicle_tells_it_late() -> None
     begins_s, late_s = 6.0, 0.3
     truth = climb(0.12, 12.0, from_s=begins_s)
     behind_m_s: tuple[list[float], list[float]] = ([], [])
-    for t_s in (begins_s + after_s for after_s in (0.3, 0.4, 0.5, 0.6)):
+    for t_s in (begins_s + after_s for after_s in (0.4, 0.5, 0.6)):  # before, it may as well be the body's heave
         told = [one for one in _known(truth, t_s - late_s) if one.quantity is not Quantity.VELOCITY]
         for ranges, behind in zip(([], _ranged(truth, t_s, np.zeros(3))), behind_m_s, strict=True):
             behind.append(float(truth.at(t_s)[1][2] - _pad(_estimator(), told + ranges, t_s)[1][2]))
