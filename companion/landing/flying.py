@@ -11,11 +11,12 @@ from companion.landing.sortie.aims import advance_way, sortie_aim
 from companion.landing.sortie.riding import has_not_left_deck
 from companion.landing.state.memory import ModelMemory, StepMemory
 from companion.landing.state.step_data import StepInputs, System
+from companion.landing.steering.ahead import make_up, model_along, shift_aim
 from companion.landing.steering.flown_plan import extrapolate, flown_plan, state_at
 from companion.landing.steering.following_height import waiting_rise_m
 from companion.landing.steering.sway import update_sway
 from companion.landing.steering.targets import Aim, hover_aim, is_at_rest, pad_aim, stopping_point
-from companion.landing.steering.virtual_model import Tracking, add_to_past, predict_deviation
+from companion.landing.steering.virtual_model import Tracking, add_to_past, state_then
 from companion.landing.touchdown.levelling import levelled, levelling_now, limit_tilt
 from companion.planning.guidance import PlanRequest, PlanResult, ReferenceState, Target
 from companion.situation.phases import FLYING_PHASES, LANDING_PHASES, STATION_PHASES, Phase
@@ -79,20 +80,27 @@ def fly(
     if model.reference is None:
         return memory, None
     period_s = 1.0 / system.config.setpoints.rate_hz
-    since_s = _since_plan_s(model, inputs.monotonic_ns, period_s)
-    now = extrapolate(model.reference, since_s - period_s) if model.plan is None else state_at(model.plan, since_s)
+    since_s = _since_step_s(model, inputs.monotonic_ns, period_s)
+    ahead_s = inputs.ahead_s(system.config)
+    reference_ns, starts_ns = (inputs.monotonic_ns + round(later_s * 1e9) for later_s in (period_s, ahead_s))
+    now, start = extrapolate(model.reference, since_s - period_s), None
+    if model.plan is not None:
+        now, start = model_along(model.plan, model.tracking, inputs.monotonic_ns, starts_ns)
     reference = _at_drone(memory, now, situation, system.config)
+    if start is None or reference is not now:
+        start = extrapolate(reference, ahead_s)
+        model = replace(model, tracking=add_to_past(model.tracking, inputs.monotonic_ns, reference))
     memory = replace(memory, model=(model := replace(model, reference=reference)))
-    reference_ns = inputs.monotonic_ns + round(period_s * 1e9)
     limits = _plan_limits(memory, situation, inputs, system.config)
     memory = advance_way(memory, situation, limits, system.config)
-    aim = _aim(memory, situation, inputs.limits, limits, system.config)
-    if is_at_rest(reference, aim):  # there is nothing to plan
-        tracking = add_to_past(model.tracking, reference_ns, reference)
+    aim = shift_aim(_aim(memory, situation, inputs.limits, limits, system.config), ahead_s)
+    tracking = add_to_past(model.tracking, starts_ns, start)
+    if is_at_rest(start, aim):  # there is nothing to plan
+        tracking = add_to_past(tracking, max(starts_ns, reference_ns), start)
         return replace(memory, model=replace(model, reference_ns=reference_ns, plan=None, tracking=tracking)), None
     request = PlanRequest(
-        state=reference,
-        target=_for_the_drone(aim.target, memory, inputs),
+        state=start,
+        target=_for_the_drone(aim.target, memory, inputs, ahead_s),
         limits=limits,
         floor_enu_m=aim.floor_enu_m,
         touched_enu_m=aim.touched_enu_m,
@@ -100,17 +108,18 @@ def fly(
     )
     request = replace(request, limits=limit_tilt(request, model.tracking.holds_enu_m_s2))
     guidance, plan = system.guidance.plan(model.guidance, request)
-    flown = flown_plan(plan, period_s, float(aim.floor_enu_m[0]), inputs.shaping, limits)
+    flown = flown_plan(plan, period_s, float(aim.floor_enu_m[0]), inputs.shaping, limits, starts_ns=starts_ns)
     levelling = levelling_now(memory, situation, inputs, system.config)
     flown = flown if levelling is None else levelled(flown, levelling)
     plan = replace(plan, next_state=state_at(flown, period_s))
+    tracking = add_to_past(tracking, starts_ns + round(period_s * 1e9), plan.next_state)
     model = replace(
         model,
-        reference=plan.next_state,
+        reference=state_then(tracking, reference_ns),
         reference_ns=reference_ns,
         plan=flown,
         guidance=guidance,
-        tracking=add_to_past(model.tracking, reference_ns, plan.next_state),
+        tracking=tracking,
         yaw_setpoint_rad=_slew_yaw_rad(memory, situation.pad, since_s, system.config),
     )
     return _update_anchor(replace(memory, model=model), situation, system.config), plan
@@ -123,27 +132,18 @@ def _plan_limits(memory: StepMemory, situation: Situation, inputs: StepInputs, c
     return limit_rates(inputs.limits, memory, situation, inputs.shaping, config)
 
 
-def _since_plan_s(model: ModelMemory, monotonic_ns: int, period_s: float) -> float:
-    """Return how long ago the last plan was made: it led to `reference_ns`, and this step may come earlier or later."""
+def _since_step_s(model: ModelMemory, monotonic_ns: int, period_s: float) -> float:
+    """Return how long ago the last step was: it led to `reference_ns`, and this one may come earlier or later."""
     return period_s + max(min((monotonic_ns - model.reference_ns) * 1e-9, STEP_MAX_S), -period_s)
 
 
-def _for_the_drone(target: Target, memory: StepMemory, inputs: StepInputs) -> Target:
+def _for_the_drone(target: Target, memory: StepMemory, inputs: StepInputs, ahead_s: float) -> Target:
     """Return where the virtual model is wanted, so that the drone, which will be off it, is where the target is."""
-    tracking, plan, response = memory.model.tracking, memory.model.plan, inputs.response
+    tracking, response = memory.model.tracking, inputs.response
     if memory.progress.phase not in LANDING_PHASES | STATION_PHASES or response is None or tracking.compared_ns is None:
         return target
-    planned = np.zeros((len(target.offset_s), 2))
-    if plan is not None:
-        path = plan.trajectory
-        for axis in range(2):
-            planned[:, axis] = np.interp(target.offset_s, path.offset_s, path.acceleration_enu_m_s2[:, axis])
     late_s = (inputs.monotonic_ns - tracking.compared_ns) * 1e-9
-    deviation = predict_deviation(tracking, response, late_s, planned)
-    position, velocity = target.position_enu_m.copy(), target.velocity_enu_m_s.copy()
-    position[:, :2] -= deviation[:, 0]
-    velocity[:, :2] -= deviation[:, 1]
-    return replace(target, position_enu_m=position, velocity_enu_m_s=velocity)
+    return make_up(target, tracking, response, late_s, ahead_s)
 
 
 def _at_drone(

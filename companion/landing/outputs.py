@@ -15,10 +15,10 @@ from companion.landing.decisions.conditions import trial_press
 from companion.landing.decisions.waiting import why_held_up
 from companion.landing.state.memory import Progress, StepMemory
 from companion.landing.state.step_data import StepInputs
-from companion.landing.steering.flown_plan import extrapolate, lead_acceleration, state_at
+from companion.landing.steering.flown_plan import asked_for, extrapolate
 from companion.landing.steering.targets import way_down
 from companion.landing.steering.virtual_model import press_down, setpoint_at
-from companion.planning.guidance import PlanResult
+from companion.planning.guidance import Trajectory
 from companion.situation.phases import Phase
 from companion.situation.situation import Approach, Situation
 from link.messages import LandingStatus, Plan, PlannedPose, Vector3
@@ -41,16 +41,12 @@ def setpoint(
     model = memory.model
     if model.reference is None or memory.control.driver.climbs_by_itself:
         return None
-    lead_s = config.setpoints.lead_s
-    if lead_s is None:
-        lead_s = 0.0 if inputs.response is None else inputs.response.cascade.lead_s
-    ahead_s = inputs.link_delay.mean_s + lead_s
+    ahead_s = inputs.ahead_s(config)
     if is_planned and model.plan is not None:
-        reference = state_at(model.plan, ahead_s)
+        cascade = None if inputs.response is None else inputs.response.cascade
+        reference = asked_for(model.plan, cascade, 1.0 / config.setpoints.rate_hz)
     else:
         reference = extrapolate(model.reference, (inputs.monotonic_ns - model.reference_ns) * 1e-9 + ahead_s)
-    if is_planned and model.plan is not None and inputs.response is not None and inputs.response.cascade.is_led:
-        reference = lead_acceleration(reference, model.plan, ahead_s, inputs.response.cascade)
     press_m_s2 = _press_m_s2(memory, situation, config)
     if press_m_s2 is not None:
         reference = press_down(reference, press_m_s2, ahead_s)
@@ -175,18 +171,17 @@ def status_publication(keys: Keys, status: LandingStatus) -> Publication:
     return Publication(keys.landing_status, json_messages.encode(status), json_messages.JSON_ENCODING)
 
 
-def plan_publication(keys: Keys, plan: PlanResult, t_ns: int, yaw_rad: float) -> Publication:
+def plan_publication(keys: Keys, way: Trajectory, t_ns: int, yaw_rad: float) -> Publication:
     """Return the planned motion as a path.
 
     Args:
         keys: of the Zenoh contract.
-        plan: of a step.
+        way: planned by a step, its offsets from `t_ns`.
         t_ns: of that step, UTC.
         yaw_rad: the heading that is flown, from East counter-clockwise.
     """
-    trajectory = plan.trajectory
-    offsets_s = trajectory.offset_s[::_PLAN_POINTS].tolist()
-    points = zip(offsets_s, trajectory.position_enu_m[::_PLAN_POINTS].tolist(), strict=True)
+    offsets_s = way.offset_s[::_PLAN_POINTS].tolist()
+    points = zip(offsets_s, way.position_enu_m[::_PLAN_POINTS].tolist(), strict=True)
     poses = tuple(
         PlannedPose(t_ns=t_ns + int(offset_s * 1e9), position_enu_m=(x, y, z), yaw_rad=yaw_rad)
         for offset_s, (x, y, z) in points

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from companion.autopilots.own_reports import carry
 from companion.core.data import Array, Forecast, OwnState, Setpoint, VehicleEstimate
 from companion.landing.steering.targets import HORIZON_OFFSETS_S
-from companion.planning.guidance import PlanResult, Trajectory
+from companion.planning.guidance import Trajectory
 from companion.recording.records import InputRecord, LinkRecord, StepRecord, StepTimeRecord
 from link.frames.rotations import conjugate, rotate
 from link.messages import BodyTruth, ContactForecast, Fix, FixVelocity, PadSighting, Plan, PlannedPose, VehicleImu
@@ -54,10 +54,10 @@ def step_messages(record: StepRecord, keys: Keys, *, long: bool) -> Iterator[Ros
     yield from _vehicle_messages(record, keys)
     if outputs.status.contact_forecast is not None:
         yield _contact_forecast(outputs.status.contact_forecast, t_ns, keys)
-    if outputs.plan is not None:
-        yaw_rad = 0.0 if outputs.setpoint is None else outputs.setpoint.yaw_rad
-        yield _plan(outputs.plan, t_ns, keys)
-        yield plan_path_message(outputs.plan.trajectory, t_ns, yaw_rad, keys)
+    way = outputs.way_from(t_ns)
+    if way is not None and outputs.setpoint is not None:
+        yield _plan(way, t_ns, keys)
+        yield plan_path_message(way, t_ns, outputs.setpoint.yaw_rad, keys)
 
 
 def _vehicle_messages(record: StepRecord, keys: Keys) -> Iterator[RosMessage]:
@@ -202,8 +202,7 @@ def forecast_message(forecast: Forecast, keys: Keys) -> RosMessage:
     )
 
 
-def _plan(plan: PlanResult, t_ns: int, keys: Keys) -> RosMessage:
-    trajectory = plan.trajectory
+def _plan(trajectory: Trajectory, t_ns: int, keys: Keys) -> RosMessage:
     return ros_message(
         keys.record("plan"),
         "Trajectory",
@@ -228,7 +227,7 @@ def plan_path_message(trajectory: Trajectory, t_ns: int, yaw_rad: float, keys: K
     """Return the planned way of the drone.
 
     Args:
-        trajectory: from `t_ns` on.
+        trajectory: its offsets from `t_ns`.
         t_ns: now, UTC.
         yaw_rad: the setpoint's heading.
         keys: of the Zenoh contract.

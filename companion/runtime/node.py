@@ -244,4 +244,4 @@ class CompanionNode:
         if self.publisher.is_due(outputs, self._clock.monotonic_ns):
             yaw_rad = self.memory.model.yaw_setpoint_rad
             status = with_links(outputs.status, self.autopilot.session, self.vehicle, self.open_to_strangers)
-            self.publisher.publish(status, outputs.plan, self._clock, yaw_rad)
+            self.publisher.publish(status, outputs.way_from(self._clock.t_ns), self._clock, yaw_rad)

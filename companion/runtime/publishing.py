@@ -5,7 +5,7 @@ import math
 from companion.config.companion import CompanionConfig
 from companion.landing.outputs import plan_publication, status_publication
 from companion.landing.state.step_data import StepOutputs
-from companion.planning.guidance import PlanResult
+from companion.planning.guidance import Trajectory
 from companion.runtime.step_clock import StepClock
 from companion.runtime.vehicle_link import VehicleLink
 from link.mavlink.session import MavlinkSession
@@ -46,12 +46,12 @@ class StatusPublisher:
         since_ns = math.inf if self._status_ns is None else monotonic_ns - self._status_ns
         return self._is_on and (outputs.text is not None or since_ns >= self._period_ns)
 
-    def publish(self, status: LandingStatus, plan: PlanResult | None, clock: StepClock, yaw_rad: float) -> None:
+    def publish(self, status: LandingStatus, way: Trajectory | None, clock: StepClock, yaw_rad: float) -> None:
         """Take what a step brought.
 
         Args:
             status: with what is known of the links.
-            plan: of the step, None while nothing is flown.
+            way: planned, its offsets from the step; None while nothing is flown.
             clock: of the step.
             yaw_rad: the heading that is flown, from East counter-clockwise.
         """
@@ -59,8 +59,8 @@ class StatusPublisher:
         self._statuses += 1
         try:
             self._publications.append(status_publication(self._keys, status))
-            if plan is not None and self._statuses % _PLAN_EVERY == 0:
-                self._publications.append(plan_publication(self._keys, plan, clock.t_ns, yaw_rad))
+            if way is not None and self._statuses % _PLAN_EVERY == 0:
+                self._publications.append(plan_publication(self._keys, way, clock.t_ns, yaw_rad))
         except PayloadError:  # a flight goes on without being seen
             self.unpublished += 1
 

@@ -151,7 +151,14 @@ def sortie_aim(memory: StepMemory, s: Situation, limits: FlightLimits, config: C
         case _:
             return None
     return rise_over_vehicle(
-        aim, memory.model.plan, s.drone, pad, keep_out, feet_offset_m=s.feet_offset_m, config=config
+        aim,
+        memory.model.plan,
+        s.drone,
+        pad,
+        keep_out,
+        monotonic_ns=s.monotonic_ns,
+        feet_offset_m=s.feet_offset_m,
+        config=config,
     )
 
 

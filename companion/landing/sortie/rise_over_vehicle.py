@@ -28,6 +28,7 @@ def rise_over_vehicle(
     pad: PadPath,
     keep_out: KeepOut,
     *,
+    monotonic_ns: int,
     feet_offset_m: float,
     config: CompanionConfig,
 ) -> Aim:
@@ -39,6 +40,7 @@ def rise_over_vehicle(
         drone: now; None while unknown.
         pad: its path.
         keep_out: the cylinder about it.
+        monotonic_ns: now.
         feet_offset_m: of the reported position above the feet.
         config: with the margin of the cylinder.
     """
@@ -46,7 +48,8 @@ def rise_over_vehicle(
     inside_m = np.zeros(len(offset_s))
     if flown is not None:
         path = flown.trajectory
-        place = np.column_stack([np.interp(offset_s, path.offset_s, path.position_enu_m[:, k]) for k in (0, 1)])
+        path_s = path.offset_s + (flown.starts_ns - monotonic_ns) * 1e-9
+        place = np.column_stack([np.interp(offset_s, path_s, path.position_enu_m[:, k]) for k in (0, 1)])
         inside_m = np.maximum(inside_m, _inside_m(place, pad_enu_m, keep_out))
     if drone is not None:
         place = drone.position_enu_m[:2] + offset_s[:, None] * drone.velocity_enu_m_s[:2]

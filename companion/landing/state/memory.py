@@ -22,7 +22,7 @@ from companion.integrity.stamps import FixStamps
 from companion.integrity.vehicle_data import Contradictions, CourseWatch
 from companion.landing.steering.flown_plan import FlownPlan
 from companion.landing.steering.sway import Sway
-from companion.landing.steering.virtual_model import NO_RIDE, Ride, Tracking
+from companion.landing.steering.virtual_model import NO_RIDE, Ride, Tracking, move_tracking
 from companion.planning.guidance import GuidanceMemory, ReferenceState
 from companion.situation.phases import Phase
 from companion.sortie.memory import SortieMemory, move_sortie
@@ -109,7 +109,7 @@ class ModelMemory(Struct, frozen=True, kw_only=True, eq=False):
     Attributes:
         reference: the model, None while nothing is flown.
         reference_ns: the model's time, monotonic.
-        plan: that leads to the model, made one period before its time; None once the model is set elsewhere.
+        plan: the newest, which begins when its setpoint takes effect; None once the model is set elsewhere.
         guidance: the guidance law's own memory.
         tracking: how the drone follows it.
         ride: how high it flies on its setpoints.
@@ -230,8 +230,8 @@ def _move_model(model: ModelMemory, by_enu_m: Array) -> ModelMemory:
     reference, tracking = model.reference, model.tracking
     if reference is not None:
         reference = replace(reference, position_enu_m=reference.position_enu_m + by_enu_m)
-    past = tuple((t_ns, place + by_enu_m, velocity) for t_ns, place, velocity in tracking.past)
-    return replace(model, reference=reference, plan=None, guidance=None, tracking=replace(tracking, past=past))
+    tracking = move_tracking(tracking, by_enu_m)
+    return replace(model, reference=reference, plan=None, guidance=None, tracking=tracking)
 
 
 def _move(point_enu_m: Array | None, by_enu_m: Array) -> Array | None:

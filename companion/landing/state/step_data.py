@@ -6,10 +6,11 @@ from companion.autopilots.driver import NO_AUTOPILOT, AutopilotCommand, Autopilo
 from companion.autopilots.response import ResponseModel, Shaping
 from companion.config.companion import CompanionConfig
 from companion.core.data import FlightLimits, Measurement, OwnState, Rival, Setpoint
-from companion.planning.guidance import Guidance, PlanResult
+from companion.planning.guidance import Guidance, PlanResult, Trajectory
 from companion.vehicle.estimator import Estimator
 from companion.vehicle.pad import PadPath
 from link.messages import Command, CommandReply, LandingStatus, PadGeometry, Station
+from link.records import replace
 
 
 class System(Struct, frozen=True, kw_only=True, eq=False):
@@ -84,6 +85,13 @@ class StepInputs(Struct, frozen=True, kw_only=True, eq=False):
         """Return the monotonic time of a stamp in UTC."""
         return t_ns - self.t_ns + self.monotonic_ns
 
+    def ahead_s(self, config: CompanionConfig) -> float:
+        """Return how long after the step its setpoint takes effect."""
+        lead_s = config.setpoints.lead_s
+        if lead_s is None:
+            lead_s = 0.0 if self.response is None else self.response.cascade.lead_s
+        return self.link_delay.mean_s + lead_s
+
 
 class StepOutputs(Struct, frozen=True, kw_only=True, eq=False):
     """What a step wants done.
@@ -94,7 +102,7 @@ class StepOutputs(Struct, frozen=True, kw_only=True, eq=False):
         text: for the pilot, None when there is nothing new.
         reply: to the operator's command, None when there was none.
         status: for the world.
-        plan: of this step, None while nothing is flown.
+        plan: of this step, None while nothing is flown; it begins as the setpoint takes effect.
         pad: as this step knew it, None while it is not known.
     """
 
@@ -105,3 +113,10 @@ class StepOutputs(Struct, frozen=True, kw_only=True, eq=False):
     status: LandingStatus
     plan: PlanResult | None
     pad: PadPath | None = None
+
+    def way_from(self, t_ns: int) -> Trajectory | None:
+        """Return the planned way with its offsets from `t_ns`, UTC; None while nothing is flown."""
+        if self.plan is None or self.setpoint is None:
+            return None
+        way = self.plan.trajectory
+        return replace(way, offset_s=way.offset_s + (self.setpoint.t_ns - t_ns) * 1e-9)

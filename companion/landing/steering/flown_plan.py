@@ -1,4 +1,4 @@
-"""A plan as it is flown: where the virtual model is at any time after it was made; pure numerics.
+"""A plan as it is flown: where the virtual model is at any time after it begins; pure numerics.
 
 A step comes when the drone has reported, over a link that loses and delays 0.02 to 0.04 s after the one before. The
 model goes on along its plan for as long as that was. Steps of a fixed period instead would change its acceleration by
@@ -20,12 +20,14 @@ class FlownPlan(Struct, frozen=True, kw_only=True, eq=False):
     """A plan, and how it is kept up for an autopilot that carries setpoints on.
 
     Attributes:
-        trajectory: of the virtual model, from where it was when the plan was made.
+        starts_ns: when it begins, monotonic.
+        trajectory: of the virtual model, from where that is then.
         lowest_enu_m: height above which a setpoint that is carried on has to end.
         shaping: of the autopilot; None of one that holds setpoints as they came.
         limits: of the plan.
     """
 
+    starts_ns: int
     trajectory: Trajectory
     lowest_enu_m: float
     shaping: Shaping | None
@@ -33,9 +35,15 @@ class FlownPlan(Struct, frozen=True, kw_only=True, eq=False):
 
 
 def flown_plan(
-    plan: PlanResult, period_s: float, lowest_enu_m: float, shaping: Shaping | None, limits: FlightLimits
+    plan: PlanResult,
+    period_s: float,
+    lowest_enu_m: float,
+    shaping: Shaping | None,
+    limits: FlightLimits,
+    *,
+    starts_ns: int = 0,
 ) -> FlownPlan:
-    """Return the plan as it is flown: its next state, `period_s` after it was made, is one of its instants."""
+    """Return the plan as it is flown: its next state, `period_s` after it begins, is one of its instants."""
     path, following = plan.trajectory, plan.next_state
     later = int(path.offset_s.searchsorted(period_s, side="right"))
     trajectory = Trajectory(
@@ -44,11 +52,13 @@ def flown_plan(
         velocity_enu_m_s=_through(path.velocity_enu_m_s, following.velocity_enu_m_s, later),
         acceleration_enu_m_s2=_through(path.acceleration_enu_m_s2, following.acceleration_enu_m_s2, later),
     )
-    return FlownPlan(trajectory=trajectory, lowest_enu_m=lowest_enu_m, shaping=shaping, limits=limits)
+    return FlownPlan(
+        starts_ns=starts_ns, trajectory=trajectory, lowest_enu_m=lowest_enu_m, shaping=shaping, limits=limits
+    )
 
 
 def state_at(flown: FlownPlan, offset_s: float) -> ReferenceState:
-    """Return the model `offset_s` after its plan was made."""
+    """Return the model `offset_s` after its plan begins."""
     planned = state_in_plan(flown.trajectory, offset_s)
     if flown.shaping is None:
         return planned
@@ -65,7 +75,7 @@ def _through(path: Array, following: Array, later: int) -> Array:
 
 
 def state_in_plan(trajectory: Trajectory, offset_s: float) -> ReferenceState:
-    """Return the model `offset_s` after its plan was made; between two instants of a plan the jerk is constant."""
+    """Return the model `offset_s` after its plan begins; between two instants of a plan the jerk is constant."""
     last = len(trajectory.offset_s) - 2
     node = min(max(int(trajectory.offset_s.searchsorted(offset_s, side="right")) - 1, 0), last)
     start_s, end_s = trajectory.offset_s[node : node + 2].tolist()
@@ -82,14 +92,26 @@ def state_in_plan(trajectory: Trajectory, offset_s: float) -> ReferenceState:
     )
 
 
-def lead_acceleration(reference: ReferenceState, plan: FlownPlan, offset_s: float, cascade: Cascade) -> ReferenceState:
-    """Return what is asked for in place of `reference`, `offset_s` after its plan was made, by a drone whose lean lags.
+def asked_for(plan: FlownPlan, cascade: Cascade | None, period_s: float) -> ReferenceState:
+    """Return what a setpoint asks for that takes effect as the plan begins.
 
-    The jerk is the mean of the time in which turn rates follow: of a shorter one the drone makes nothing.
+    An autopilot that carries it on is asked for the mean acceleration until the next one comes. One whose setpoints are
+    led is asked for more, since its lean lags: for the mean jerk of the time in which turn rates follow, for of a
+    shorter one the drone makes nothing.
+
+    Args:
+        plan: of the step.
+        cascade: of the autopilot, None while none is known.
+        period_s: until the next setpoint.
     """
-    now = reference.acceleration_enu_m_s2
-    jerk_m_s3 = (state_at(plan, offset_s + RATE_LAG_S).acceleration_enu_m_s2 - now) / RATE_LAG_S
-    return replace(reference, acceleration_enu_m_s2=np.append(cascade.lead(now[:2], jerk_m_s3[:2]), now[2]))
+    start = state_at(plan, 0.0)
+    now = start.acceleration_enu_m_s2
+    if cascade is not None and cascade.is_led:
+        jerk_m_s3 = (state_at(plan, RATE_LAG_S).acceleration_enu_m_s2 - now) / RATE_LAG_S
+        now = np.append(cascade.lead(now[:2], jerk_m_s3[:2]), now[2])
+    elif plan.shaping is not None:
+        now = state_at(plan, 0.5 * period_s).acceleration_enu_m_s2
+    return replace(start, acceleration_enu_m_s2=now)
 
 
 def keep_up(

@@ -17,13 +17,13 @@ from companion.planning.guidance import ReferenceState
 from link.frames.rotations import rotate
 from link.records import replace
 
-_HISTORY_S = 0.6  # longer than any telemetry is late
+_HISTORY_S = 1.0  # longer than any telemetry is late and any setpoint is ahead
 UPRIGHT_MIN = 0.5  # cosine of a tilt beyond which nothing is steady
 _AIR_MEAN_S = 1.0  # longer than a gust's beginning, shorter than a change of speed
 _HOLDS_MEAN_S = 0.1  # of five reports, shorter than a position controller's swing
 _RIDE_MEAN_S = 0.5  # as the last quarter of a metre takes before it may touch
 _RIDE_MAX_M = 0.15  # a lag of 0.3 s while it sinks at 0.5 m/s: what is more does not last
-_BREAK_S = 0.25  # between two reports, after which the deviation is what the next one shows
+BREAK_S = 0.25  # between two reports, after which the deviation is what the next one shows
 _ACCELERATION_MAX_M_S2 = 10.0  # of the model between two steps: it is set back at times, and that is no motion
 
 
@@ -31,7 +31,7 @@ class Tracking(Struct, frozen=True, kw_only=True, eq=False):
     """The model's recent past and the drone beside it.
 
     Attributes:
-        past: (monotonic ns, position (3,), velocity (3,) in W), oldest first.
+        past: the model at monotonic times in ns, oldest first, up to where the newest setpoint leads.
         error_m: from the drone to the model at the time of its newest report.
         deviation: (4, 2) horizontal state of `ResponseModel` then: from the model to the drone, and what moves it.
         air_enu_m_s2: (2,) horizontal thrust by mass that holds against the air, a mean of the last second.
@@ -41,7 +41,7 @@ class Tracking(Struct, frozen=True, kw_only=True, eq=False):
         compared_ns: monotonic time of the newest report that was compared; None before the first.
     """
 
-    past: tuple[tuple[int, Array, Array], ...] = ()
+    past: tuple[tuple[int, ReferenceState], ...] = ()
     error_m: float = 0.0
     deviation: Array = field(default_factory=lambda: np.zeros((STATES, 2)))
     air_enu_m_s2: Array = field(default_factory=lambda: np.zeros(2))
@@ -57,7 +57,28 @@ def add_to_past(tracking: Tracking, t_ns: int, reference: ReferenceState) -> Tra
         past = past[1:]
     while past and past[-1][0] >= t_ns:  # a step that is rebuilt at the same time takes its place
         past = past[:-1]
-    return replace(tracking, past=(*past, (t_ns, reference.position_enu_m, reference.velocity_enu_m_s)))
+    return replace(tracking, past=(*past, (t_ns, reference)))
+
+
+def move_tracking(tracking: Tracking, by_enu_m: Array) -> Tracking:
+    """Return the tracking in a frame in which all places are moved by (3,)."""
+    moved = tuple(
+        (t_ns, replace(state, position_enu_m=state.position_enu_m + by_enu_m)) for t_ns, state in tracking.past
+    )
+    return replace(tracking, past=moved)
+
+
+def state_then(tracking: Tracking, t_ns: int) -> ReferenceState:
+    """Return the model at the monotonic `t_ns`, between the oldest and the newest state that were added."""
+    if len(tracking.past) == 1:
+        return tracking.past[0][1]
+    (_, start), (_, end), share = _around(tracking, t_ns)
+    accelerates = end.acceleration_enu_m_s2 - start.acceleration_enu_m_s2
+    return ReferenceState(
+        position_enu_m=start.position_enu_m + share * (end.position_enu_m - start.position_enu_m),
+        velocity_enu_m_s=start.velocity_enu_m_s + share * (end.velocity_enu_m_s - start.velocity_enu_m_s),
+        acceleration_enu_m_s2=start.acceleration_enu_m_s2 + share * accelerates,
+    )
 
 
 def update_tracking(
@@ -92,7 +113,7 @@ def update_tracking(
     if not estimates or response is None:
         return replace(tracking, deviation=np.zeros((STATES, 2)))
     measured = np.array([-behind[:2], np.array(own.velocity_enu_m_s[:2]) - velocity[:2]])
-    if since_s > _BREAK_S:
+    if since_s > BREAK_S:
         return replace(tracking, deviation=np.vstack((measured, np.zeros((STATES - 2, 2)))))
     return replace(tracking, deviation=response.update(tracking.deviation, measured, acceleration[:2], since_s))
 
@@ -155,7 +176,7 @@ def _update_leans(
     """
     air, holds = tracking.air_enu_m_s2, tracking.holds_enu_m_s2
     x, y, up = rotate(own.orientation_wxyz, (0.0, 0.0, 1.0))
-    if up < UPRIGHT_MIN or not 0.0 < since_s < _BREAK_S:
+    if up < UPRIGHT_MIN or not 0.0 < since_s < BREAK_S:
         return air, holds
     leans = np.array([x, y]) * (GRAVITY_M_S2 / up)
     changed = (np.array(own.velocity_enu_m_s[:2]) - tracking.velocity_enu_m_s) / since_s
@@ -167,26 +188,18 @@ def _update_leans(
 
 def _model_at(tracking: Tracking, t_ns: int) -> tuple[Array, Array, Array]:
     """Return position, velocity and acceleration (3,) of the model at `t_ns`; after its newest place that one's."""
+    (start_ns, start), (end_ns, end), share = _around(tracking, t_ns)
+    moved, faster = end.position_enu_m - start.position_enu_m, end.velocity_enu_m_s - start.velocity_enu_m_s
+    acceleration = (faster / ((end_ns - start_ns) * 1e-9)).clip(-_ACCELERATION_MAX_M_S2, _ACCELERATION_MAX_M_S2)
+    return start.position_enu_m + share * moved, start.velocity_enu_m_s + share * faster, acceleration
+
+
+def _around(tracking: Tracking, t_ns: int) -> tuple[tuple[int, ReferenceState], tuple[int, ReferenceState], float]:
+    """Return the states before and after `t_ns` with their times, and the share of the second one."""
     past = tracking.past
     later = next((index for index in range(len(past) - 1, 0, -1) if past[index - 1][0] <= t_ns), 1)
-    (start_ns, start, start_velocity), (end_ns, end, end_velocity) = past[later - 1], past[later]
-    between_s = (end_ns - start_ns) * 1e-9
-    share = min(max((t_ns - start_ns) / (end_ns - start_ns), 0.0), 1.0)
-    acceleration = ((end_velocity - start_velocity) / between_s).clip(-_ACCELERATION_MAX_M_S2, _ACCELERATION_MAX_M_S2)
-    return start + share * (end - start), start_velocity + share * (end_velocity - start_velocity), acceleration
-
-
-def predict_deviation(tracking: Tracking, response: ResponseModel, late_s: float, planned: Array) -> Array:
-    """Return how far the drone will be off the model, (n, 2, 2): at the response's offsets, position and velocity.
-
-    Args:
-        tracking: with the deviation at the time of the newest report.
-        response: of the autopilot.
-        late_s: since that report.
-        planned: (n, 2) accelerations of the model at the offsets.
-    """
-    now = response.carry(tracking.deviation, min(late_s, _BREAK_S))
-    return response.predict(now, planned)[:, :2]
+    start, end = past[later - 1], past[later]
+    return start, end, min(max((t_ns - start[0]) / (end[0] - start[0]), 0.0), 1.0)
 
 
 def press_down(reference: ReferenceState, acceleration_m_s2: float, duration_s: float) -> ReferenceState:

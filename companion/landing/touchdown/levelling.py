@@ -49,8 +49,8 @@ def levelling_now(
     """Return how the drone levels, None of one that does not: just above the pad it turns less than the deck.
 
     A drone that leans touches with its lowest foot, so it begins that much higher. It begins earlier by the time that
-    it takes to come upright at the largest jerk, by which its lean lags, and by which nearly every setpoint is late at
-    most. One that breaks off climbs before it leans.
+    it takes to come upright at the largest jerk, by which its lean lags, by which the plan begins later, and by which
+    nearly every setpoint is late at most. One that breaks off climbs before it leans.
     """
     pad, relative, limits = situation.pad, situation.approach, inputs.limits
     is_low = memory.progress.phase in (Phase.DESCEND, Phase.ABORT)
@@ -63,7 +63,7 @@ def levelling_now(
     kept_m_s2, below_m = level_end(pad, relative, inputs, config)
     air = tracking.air_enu_m_s2
     takes_s = max(math.hypot(*(asked + beside - air).tolist()) - kept_m_s2, 0.0) / limits.jerk_max_m_s3
-    early_m = max(-relative.climb_m_s, 0.0) * takes_s
+    early_m = max(-relative.climb_m_s, 0.0) * (takes_s + inputs.ahead_s(config))
     if lowest_foot_m(situation, relative, config) > below_m + early_m + escape_m:
         return None
     most_m_s2 = min(math.hypot(*air.tolist()) + kept_m_s2, limits.tilt_acceleration_m_s2)

@@ -90,7 +90,7 @@ def _flown(
     corrects_lag: bool,
     kind: type[CascadeFlight] = CascadeFlight,
 ) -> list[float]:
-    """The distances from the pad's centre in the fourth second of the alignment."""
+    """The distances from the pad's centre, from 3.5 s of the alignment on, for a second."""
     waits = configured(
         {
             "setpoints": {"corrects_lag": corrects_lag},
@@ -100,7 +100,7 @@ def _flown(
     flight = kind(vehicle=_vehicle(), config=waits)
     flight.late_s, flight.push_enu_m_s2, flight.gains = late_s, np.array(push_enu_m_s2), gains
     flight.start_and_reach(Phase.ALIGN)
-    flight.run(3.0)
+    flight.run(3.5)
     distances = []
     for _ in range(50):
         flight.step()

@@ -54,7 +54,7 @@ def plan(start_enu_m: Array, velocity_enu_m_s: Vector3) -> FlownPlan:
         velocity_enu_m_s=velocity,
         acceleration_enu_m_s2=np.zeros_like(velocity),
     )
-    return FlownPlan(trajectory=trajectory, lowest_enu_m=0.0, shaping=None, limits=LIMITS)
+    return FlownPlan(starts_ns=NOW_NS, trajectory=trajectory, lowest_enu_m=0.0, shaping=None, limits=LIMITS)
 
 
 def aim_at(up_m: float) -> Aim:
@@ -71,7 +71,7 @@ def aim_at(up_m: float) -> Aim:
 def raised(flown: FlownPlan | None, now: Drone | None, up_m: float = LOW_M) -> Array:
     """Return how much higher (n, 2) target and floor are."""
     aim = aim_at(up_m)
-    higher = rise_over_vehicle(aim, flown, now, PAD, KEEP_OUT, feet_offset_m=GEAR_M, config=CONFIG)
+    higher = rise_over_vehicle(aim, flown, now, PAD, KEEP_OUT, monotonic_ns=NOW_NS, feet_offset_m=GEAR_M, config=CONFIG)
     target = higher.target.position_enu_m[:, 2] - aim.target.position_enu_m[:, 2]
     return np.column_stack((target, higher.floor_enu_m - aim.floor_enu_m))
 

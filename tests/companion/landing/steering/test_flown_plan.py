@@ -9,10 +9,10 @@ from companion.autopilots.response import Cascade, Shaping
 from companion.core.data import Array
 from companion.landing.state.step_data import StepOutputs
 from companion.landing.steering.flown_plan import (
+    asked_for,
     extrapolate,
     flown_plan,
     keep_up,
-    lead_acceleration,
     limit_sink,
     state_at,
     state_in_plan,
@@ -40,6 +40,7 @@ heights, rates, ups = st.floats(-3.0, 20.0), st.floats(-4.0, 4.0), st.floats(-10
 durations = st.floats(0.1, 5.0)
 BRAKES_M_S2 = 1.0  # ArduPilot's WPNAV_ACCEL_Z
 LIMITS = CONFIG.limits.flight_limits()
+GAINS = Cascade(position_per_s=0.95, velocity_per_s=1.8, integral_per_s2=0.4, lead_s=0.0, attitude_lag_s=0.3)
 UNLIMITED = replace(LIMITS, climb_max_m_s=1e6, vertical_acceleration_max_m_s2=1e6)
 
 
@@ -176,16 +177,28 @@ def test_model_after_one_period_is_the_next_state_of_a_law_that_plans_no_instant
     np.testing.assert_array_equal(model.acceleration_enu_m_s2, following.acceleration_enu_m_s2)
 
 
-def test_led_acceleration_is_that_of_the_plan_and_its_jerk_over_the_lag() -> None:
+def _asked(cascade: Cascade, shaping: Shaping | None) -> ReferenceState:
     following = state_in_plan(_cubic(np.array([0.0, PERIOD_S, 0.1])), PERIOD_S)
-    flown, offset_s = flown_plan(_plan(following), PERIOD_S, 0.0, None, LIMITS), 0.03
-    cascade = Cascade(position_per_s=0.95, velocity_per_s=1.8, integral_per_s2=0.4, lead_s=0.0, attitude_lag_s=0.3)
-    model = state_at(flown, offset_s)
-    asked = lead_acceleration(model, flown, offset_s, cascade)
-    ahead = _cubic(np.array([offset_s + 0.3])).acceleration_enu_m_s2[0]  # of a constant jerk
-    np.testing.assert_allclose(asked.acceleration_enu_m_s2[:2], ahead[:2])
-    assert asked.acceleration_enu_m_s2[2] == model.acceleration_enu_m_s2[2]
-    assert asked.position_enu_m is model.position_enu_m
+    return asked_for(flown_plan(_plan(following), PERIOD_S, -1e4, shaping, LIMITS), cascade, PERIOD_S)
+
+
+def test_led_acceleration_is_that_of_the_plan_and_its_jerk_over_the_lag() -> None:
+    asked = _asked(replace(GAINS, is_led=True), None)
+    now, ahead = _cubic(np.array([0.0, 0.3])).acceleration_enu_m_s2  # of a constant jerk
+    np.testing.assert_allclose(asked.acceleration_enu_m_s2, [*ahead[:2], now[2]])
+    np.testing.assert_allclose(asked.position_enu_m, _cubic(np.array([0.0])).position_enu_m[0])
+
+
+def test_setpoint_that_is_carried_on_asks_for_the_mean_acceleration_until_the_next() -> None:
+    asked = _asked(GAINS, _carried(1.0))
+    start, end = _cubic(np.array([0.0, PERIOD_S])).acceleration_enu_m_s2
+    np.testing.assert_allclose(asked.acceleration_enu_m_s2, 0.5 * (start + end))
+    np.testing.assert_allclose(asked.velocity_enu_m_s, _cubic(np.array([0.0])).velocity_enu_m_s[0])
+
+
+def test_setpoint_that_is_held_as_it_came_asks_for_the_acceleration_then() -> None:
+    start = _cubic(np.array([0.0])).acceleration_enu_m_s2[0]
+    np.testing.assert_allclose(_asked(GAINS, None).acceleration_enu_m_s2, start)
 
 
 class LateFlight(Flight):

@@ -214,7 +214,7 @@ def test_a_levelled_plan_leans_by_no_more_than_it_may_once_its_lean_has_changed(
         velocity_enu_m_s=still,
         acceleration_enu_m_s2=still + np.array([*asked, 1.0]),
     )
-    flown = FlownPlan(trajectory=path, lowest_enu_m=0.0, shaping=None, limits=LIMITS)
+    flown = FlownPlan(starts_ns=0, trajectory=path, lowest_enu_m=0.0, shaping=None, limits=LIMITS)
     plan = levelled(flown, Levelling(leans_max_m_s2=most_m_s2, beside_enu_m_s2=beside, jerk_max_m_s3=jerk_m_s3))
     acceleration = plan.trajectory.acceleration_enu_m_s2
     leans = np.linalg.norm(acceleration[:, :2] + beside, axis=1)

@@ -1,0 +1,90 @@
+"""A setpoint takes effect a moment after its step, and there its plan begins; pure numerics.
+
+Until then the drone follows what was sent before. A model that turned at once would be ahead of what the drone is told,
+and its plans would make up for a deviation that they caused: behind a link of 0.1 s a drone swung by 0.3 m/s.
+"""
+
+import numpy as np
+
+from companion.autopilots.response import ResponseModel
+from companion.core.data import STEP_MAX_S, Array
+from companion.landing.steering.flown_plan import FlownPlan, state_at
+from companion.landing.steering.targets import HORIZON_OFFSETS_S, Aim
+from companion.landing.steering.virtual_model import BREAK_S, Tracking, add_to_past, state_then
+from companion.planning.guidance import ReferenceState, Target
+from link.records import replace
+
+
+def model_along(
+    plan: FlownPlan, tracking: Tracking, monotonic_ns: int, starts_ns: int
+) -> tuple[ReferenceState, ReferenceState]:
+    """Return the virtual model now, and where the next plan begins.
+
+    Args:
+        plan: the newest.
+        tracking: with the model up to where that leads.
+        monotonic_ns: now.
+        starts_ns: when the next setpoint takes effect.
+    """
+    start = state_at(plan, min(max((starts_ns - plan.starts_ns) * 1e-9, 0.0), STEP_MAX_S))
+    return state_then(add_to_past(tracking, starts_ns, start), monotonic_ns), start
+
+
+def shift_aim(aim: Aim, by_s: float) -> Aim:
+    """Return the aim with its offsets counted from `by_s` later on.
+
+    Between two offsets it follows the cubic of place and velocity; beyond the last one it goes on as it moves there.
+    """
+    before, spacing_s = aim.target, HORIZON_OFFSETS_S[1]
+    whole = int(by_s / spacing_s)
+    share = by_s / spacing_s - whole
+    velocity = _extended(before.velocity_enu_m_s, whole)
+    onwards_m = np.outer(spacing_s * np.arange(1, whole + 2), velocity[-1])
+    place = np.vstack((before.position_enu_m, before.position_enu_m[-1] + onwards_m))[whole:]
+    start, end = place[:-1], place[1:]
+    bows = (1.0 - share) * (spacing_s * velocity[:-1] - (end - start)) - share * (
+        spacing_s * velocity[1:] - (end - start)
+    )
+    target = replace(
+        before,
+        position_enu_m=start + share * (end - start) + share * (1.0 - share) * bows,
+        velocity_enu_m_s=_between(velocity, share),
+        acceleration_enu_m_s2=_between(_extended(before.acceleration_enu_m_s2, whole), share),
+    )
+    touched = aim.touched_enu_m
+    return replace(
+        aim,
+        target=target,
+        floor_enu_m=_between(_extended(aim.floor_enu_m, whole), share),
+        touched_enu_m=None if touched is None else _between(_extended(touched, whole), share),
+    )
+
+
+def _extended(values: Array, whole: int) -> Array:
+    """Return values (n + 1, ...) of the offsets from `whole` on, the last one kept."""
+    return np.concatenate((values[whole:], np.repeat(values[-1:], whole + 1, axis=0)))
+
+
+def _between(values: Array, share: float) -> Array:
+    return np.asarray(values[:-1] + share * (values[1:] - values[:-1]))
+
+
+def make_up(target: Target, tracking: Tracking, response: ResponseModel, late_s: float, ahead_s: float) -> Target:
+    """Return where the virtual model is wanted, so that the drone, which will be off it, is where the target is.
+
+    What the drone lags is foreseen along the target's way. Foreseen along the last plan, each plan would make up for
+    what the one before it was going to: over a link that jitters a drone swung by 3 m about a car on a straight road.
+
+    Args:
+        target: of the drone.
+        tracking: with the deviation at the time of the newest report.
+        response: of the autopilot.
+        late_s: since that report.
+        ahead_s: from now to the target's first offset.
+    """
+    then = response.carry(tracking.deviation, min(late_s, BREAK_S) + ahead_s)
+    deviation = response.predict(then, target.acceleration_enu_m_s2[:, :2])[:, :2]
+    position, velocity = target.position_enu_m.copy(), target.velocity_enu_m_s.copy()
+    position[:, :2] -= deviation[:, 0]
+    velocity[:, :2] -= deviation[:, 1]
+    return replace(target, position_enu_m=position, velocity_enu_m_s=velocity)

@@ -1,0 +1,46 @@
+"""How calmly a drone follows a car on a straight road over a link that is late, jitters and loses."""
+
+import numpy as np
+import pytest
+
+from companion.core.data import Array
+from companion.situation.phases import Phase
+from scenarios.catalogue.catalogue import load_changed_scenario
+from scenarios.config import FIRMWARES, FirmwareName, Scenario
+from scenarios.lockstep.lockstep import Lockstep
+
+SEEDS = (4, 5)
+SETTLED_S, WATCHED_S = 1.0, 10.0
+GOOD = ("link.mavlink.delay_s=0.02",)
+BAD = ("link.mavlink.delay_s=0.1", "link.mavlink.jitter_s=0.05", "link.mavlink.loss=0.2")
+
+
+def _asked_m_s2(firmware: FirmwareName, link: tuple[str, ...]) -> float:
+    """Root mean square of the horizontal acceleration that is asked for over a car that drives evenly."""
+    asked = [one for seed in SEEDS for one in _asked_of(Lockstep(_scenario(firmware, link), seed))]
+    return float(np.sqrt(np.mean(np.square(asked).sum(axis=1))))
+
+
+def _scenario(firmware: FirmwareName, link: tuple[str, ...]) -> Scenario:
+    return load_changed_scenario(f"straight_7+firmware={firmware}", link)
+
+
+def _asked_of(run: Lockstep) -> list[Array]:
+    asked: list[Array] = []
+    begun_s = None
+    while run.recording.elapsed_s < (begun_s or 60.0) + WATCHED_S and run.companion.phase is not Phase.TOUCHDOWN:
+        run.step()
+        if run.companion.phase in (Phase.ALIGN, Phase.DESCEND):
+            begun_s = begun_s or run.recording.elapsed_s
+            reference = run.companion.memory.model.reference
+            assert reference is not None
+            if run.recording.elapsed_s > begun_s + SETTLED_S:
+                asked.append(reference.acceleration_enu_m_s2[:2])
+    assert len(asked) > 100
+    return asked
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("firmware", FIRMWARES)
+def test_drone_is_asked_for_less_than_twice_as_much_over_a_poor_link(firmware: FirmwareName) -> None:
+    assert _asked_m_s2(firmware, BAD) < 2.0 * _asked_m_s2(firmware, GOOD)
