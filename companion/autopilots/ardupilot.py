@@ -49,10 +49,6 @@ _TILT_BY_POSITION = (Named("PSC_ANGLE_MAX", least=TILT_LEAST_DEG),)  # the small
 _SPEED = (Named("WPNAV_SPEED", _CENTI), Named("WP_SPD"))
 _CLIMB = (Named("WPNAV_SPEED_UP", _CENTI), Named("WP_SPD_UP"))
 _DESCENT = (Named("WPNAV_SPEED_DN", _CENTI), Named("WP_SPD_DN"))
-# The rest is for its own corrections, which its shaping bounds together with what is asked for: with none left a path
-# that is late stays late, and a drone was seen to swing by 1.5 m about a pad at 5 m/s. Of 0.6, 0.8 and 1 this one did
-# not swing, and took less time than 0.6.
-_JERK_SHARE = 0.8
 # The ends of their stated ranges, so that no parameter, nor one that somebody else tells, makes a path without an end.
 # PSC_JERK_Z is stated from 5 on, and is landed with at less.
 _JERK_LEAST_M_S3, _ACCELERATION_LEAST_M_S2 = 1.0, 0.5
@@ -163,10 +159,8 @@ class ArduPilotDriver:
             climb_max_m_s=min(wanted.climb_max_m_s, find_limit(parameters, _CLIMB)),
             descent_max_m_s=min(wanted.descent_max_m_s, find_limit(parameters, _DESCENT)),
             tilt_acceleration_m_s2=acceleration_of_tilt_m_s2(tilt_deg),
-            jerk_max_m_s3=min(wanted.jerk_max_m_s3, _JERK_SHARE * _shaping_jerk_m_s3(parameters)),
-            vertical_jerk_max_m_s3=min(
-                wanted.vertical_jerk_max_m_s3, _JERK_SHARE * find_limit(parameters, _VERTICAL_JERK)
-            ),
+            jerk_max_m_s3=min(wanted.jerk_max_m_s3, _shaping_jerk_m_s3(parameters)),
+            vertical_jerk_max_m_s3=min(wanted.vertical_jerk_max_m_s3, find_limit(parameters, _VERTICAL_JERK)),
         )
 
     def cascade(self, parameters: Mapping[str, float]) -> Cascade:
