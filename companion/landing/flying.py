@@ -85,7 +85,8 @@ def fly(
     reference_ns, starts_ns = (inputs.monotonic_ns + round(later_s * 1e9) for later_s in (period_s, ahead_s))
     now, start = extrapolate(model.reference, since_s - period_s), None
     if model.plan is not None:
-        now, start = model_along(model.plan, model.tracking, inputs.monotonic_ns, starts_ns)
+        elapsed_s = since_s + ahead_s - ((model.plan.starts_ns - model.reference_ns) * 1e-9 + period_s)
+        now, start = model_along(model.plan, model.tracking, inputs.monotonic_ns, starts_ns, elapsed_s)
     reference = _at_drone(memory, now, situation, system.config)
     if start is None or reference is not now:
         start = extrapolate(reference, ahead_s)

@@ -7,7 +7,7 @@ and its plans would make up for a deviation that they caused: behind a link of 0
 import numpy as np
 
 from companion.autopilots.response import ResponseModel
-from companion.core.data import STEP_MAX_S, Array
+from companion.core.data import Array
 from companion.landing.steering.flown_plan import FlownPlan, state_at
 from companion.landing.steering.targets import HORIZON_OFFSETS_S, Aim
 from companion.landing.steering.virtual_model import BREAK_S, Tracking, add_to_past, state_then
@@ -16,7 +16,7 @@ from link.records import replace
 
 
 def model_along(
-    plan: FlownPlan, tracking: Tracking, monotonic_ns: int, starts_ns: int
+    plan: FlownPlan, tracking: Tracking, monotonic_ns: int, starts_ns: int, elapsed_s: float
 ) -> tuple[ReferenceState, ReferenceState]:
     """Return the virtual model now, and where the next plan begins.
 
@@ -25,8 +25,9 @@ def model_along(
         tracking: with the model up to where that leads.
         monotonic_ns: now.
         starts_ns: when the next setpoint takes effect.
+        elapsed_s: from the plan's beginning to then; negative where a link has become quicker.
     """
-    start = state_at(plan, min(max((starts_ns - plan.starts_ns) * 1e-9, 0.0), STEP_MAX_S))
+    start = state_at(plan, elapsed_s) if elapsed_s >= 0.0 else state_then(tracking, starts_ns)
     return state_then(add_to_past(tracking, starts_ns, start), monotonic_ns), start
 
 
