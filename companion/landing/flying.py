@@ -79,9 +79,8 @@ def fly(
     model = memory.model
     if model.reference is None:
         return memory, None
-    period_s = 1.0 / system.config.setpoints.rate_hz
+    period_s, ahead_s = 1.0 / system.config.setpoints.rate_hz, inputs.ahead_s(system.config)
     since_s = _since_step_s(model, inputs.monotonic_ns, period_s)
-    ahead_s = inputs.ahead_s(system.config)
     reference_ns, starts_ns = (inputs.monotonic_ns + round(later_s * 1e9) for later_s in (period_s, ahead_s))
     now, start = extrapolate(model.reference, since_s - period_s), None
     if model.plan is not None:
@@ -143,8 +142,9 @@ def _for_the_drone(target: Target, memory: StepMemory, inputs: StepInputs, ahead
     tracking, response = memory.model.tracking, inputs.response
     if memory.progress.phase not in LANDING_PHASES | STATION_PHASES or response is None or tracking.compared_ns is None:
         return target
+    chase = memory.model.plan if memory.progress.phase is Phase.CHASE else None
     late_s = (inputs.monotonic_ns - tracking.compared_ns) * 1e-9
-    return make_up(target, tracking, response, late_s, ahead_s)
+    return make_up(target, chase, tracking, response, late_s=late_s, ahead_s=ahead_s)
 
 
 def _at_drone(
