@@ -80,11 +80,11 @@ def fly(
     if model.reference is None:
         return memory, None
     period_s, ahead_s = 1.0 / system.config.setpoints.rate_hz, inputs.ahead_s(system.config)
-    since_s = _since_step_s(model, inputs.monotonic_ns, period_s)
+    late_s = _late_s(model, inputs.monotonic_ns, period_s)
     reference_ns, starts_ns = (inputs.monotonic_ns + round(later_s * 1e9) for later_s in (period_s, ahead_s))
-    now, start = extrapolate(model.reference, since_s - period_s), None
+    now, start = extrapolate(model.reference, late_s), None
     if model.plan is not None:
-        elapsed_s = since_s + ahead_s - ((model.plan.starts_ns - model.reference_ns) * 1e-9 + period_s)
+        elapsed_s = late_s + ahead_s - (model.plan.starts_ns - model.reference_ns) * 1e-9
         now, start = model_along(model.plan, model.tracking, inputs.monotonic_ns, starts_ns, elapsed_s)
     reference = _at_drone(memory, now, situation, system.config)
     if start is None or reference is not now:
@@ -120,7 +120,7 @@ def fly(
         plan=flown,
         guidance=guidance,
         tracking=tracking,
-        yaw_setpoint_rad=_slew_yaw_rad(memory, situation.pad, since_s, system.config),
+        yaw_setpoint_rad=_slew_yaw_rad(memory, situation.pad, period_s + late_s, system.config),
     )
     return _update_anchor(replace(memory, model=model), situation, system.config), plan
 
@@ -132,9 +132,9 @@ def _plan_limits(memory: StepMemory, situation: Situation, inputs: StepInputs, c
     return limit_rates(inputs.limits, memory, situation, inputs.shaping, config)
 
 
-def _since_step_s(model: ModelMemory, monotonic_ns: int, period_s: float) -> float:
-    """Return how long ago the last step was: it led to `reference_ns`, and this one may come earlier or later."""
-    return period_s + max(min((monotonic_ns - model.reference_ns) * 1e-9, STEP_MAX_S), -period_s)
+def _late_s(model: ModelMemory, monotonic_ns: int, period_s: float) -> float:
+    """Return by how much later than `reference_ns`, to which the last step led, this step comes; it may be earlier."""
+    return max(min((monotonic_ns - model.reference_ns) * 1e-9, STEP_MAX_S), -period_s)
 
 
 def _for_the_drone(target: Target, memory: StepMemory, inputs: StepInputs, ahead_s: float) -> Target:

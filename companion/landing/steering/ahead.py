@@ -42,13 +42,11 @@ def shift_aim(aim: Aim, by_s: float) -> Aim:
     velocity = _extended(before.velocity_enu_m_s, whole)
     onwards_m = np.outer(spacing_s * np.arange(1, whole + 2), velocity[-1])
     place = np.vstack((before.position_enu_m, before.position_enu_m[-1] + onwards_m))[whole:]
-    start, end = place[:-1], place[1:]
-    bows = (1.0 - share) * (spacing_s * velocity[:-1] - (end - start)) - share * (
-        spacing_s * velocity[1:] - (end - start)
-    )
+    moved, (start, end) = np.diff(place, axis=0), (spacing_s * velocity[:-1], spacing_s * velocity[1:])
+    bows = (1.0 - share) * (start - moved) - share * (end - moved)
     target = replace(
         before,
-        position_enu_m=start + share * (end - start) + share * (1.0 - share) * bows,
+        position_enu_m=place[:-1] + share * moved + share * (1.0 - share) * bows,
         velocity_enu_m_s=_between(velocity, share),
         acceleration_enu_m_s2=_between(_extended(before.acceleration_enu_m_s2, whole), share),
     )

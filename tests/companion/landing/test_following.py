@@ -89,8 +89,9 @@ def _flown(
     *,
     corrects_lag: bool,
     kind: type[CascadeFlight] = CascadeFlight,
+    after_s: float = 3.0,
 ) -> list[float]:
-    """The distances from the pad's centre, from 3.5 s of the alignment on, for a second."""
+    """The distances from the pad's centre in the second that begins `after_s` after the alignment did."""
     waits = configured(
         {
             "setpoints": {"corrects_lag": corrects_lag},
@@ -100,7 +101,7 @@ def _flown(
     flight = kind(vehicle=_vehicle(), config=waits)
     flight.late_s, flight.push_enu_m_s2, flight.gains = late_s, np.array(push_enu_m_s2), gains
     flight.start_and_reach(Phase.ALIGN)
-    flight.run(3.5)
+    flight.run(after_s)
     distances = []
     for _ in range(50):
         flight.step()
@@ -128,7 +129,8 @@ def test_drone_that_is_lastingly_off_its_setpoints_is_brought_over_the_pad(
 
 @pytest.mark.slow
 def test_drone_that_follows_exactly_is_not_led_off_the_pad() -> None:
-    assert max(_flown(0.0, (0.0, 0.0), Px4Driver().cascade({}), corrects_lag=True)) < 0.05
+    """Its lean does not lag, though the model says so: it settles later than one whose lean does."""
+    assert max(_flown(0.0, (0.0, 0.0), Px4Driver().cascade({}), corrects_lag=True, after_s=3.5)) < 0.05
 
 
 @pytest.mark.parametrize("speed_m_s", [4.0, 9.0])
