@@ -132,6 +132,7 @@ class SwayConfig(StrictModel):
     tilt_std_rad: Positive = 0.002  # 5 mm of height from axle to axle: on smooth asphalt
     heave_std_m: Positive = 0.005  # likewise
     frequency_hz: Positive = 1.5  # at which bodies pitch and roll on their wheels (Gillespie 1992, chapter 5)
+    frequency_min_hz: Positive = 0.6  # of the softest springs, and of a road whose waves sway a body themselves
     damping: Annotated[float, Field(gt=0.0, lt=1.0)] = 0.3  # of the critical one; dampers have 0.2 to 0.4
     prior_s: Positive = 5.0  # for which this counts as watched: some swings
 

@@ -63,7 +63,7 @@ def _with_told_tilt(state: ImmState, tilt: Measurement, motion: DeckMotion, numb
 
 def _with_sway(state: ImmState, config: ImmConfig, numbers: Numbers) -> ImmState:
     sway = first_sway(config.sway)
-    variances = np.append(sway_variances(sway, config.sway), (0.0, 0.0))
+    variances = np.append(sway_variances(sway), (0.0, 0.0))
     return replace(state, modes=open_deck(state.modes, numbers.lever_m, variances), sway=sway)
 
 

@@ -1,110 +1,128 @@
-"""How much an antenna goes to and fro as its vehicle's body sways, by the velocities that its receiver tells; pure.
+"""How much, and how often, an antenna goes to and fro as its vehicle's body sways, by its receiver's velocities; pure.
 
 A sway much larger than it is taken to be is explained by the filter's models of driving: as a brake, and a moment later
 as its opposite. What the filter makes of it then does not tell how large it is (`body_sway`). But no driver does that
 within the period of a body. Of velocities that are half of that period apart the third difference is eight times the
-sway's; of an even acceleration or an even turn it is nothing, and of one that begins or ends it is something for a
-second. So the median over some seconds is the sway's, unless something begins or ends all the time. Of a sine the
-median of the squares is their mean, of noise it is less: the sway is at least as large.
+sway's; of an even acceleration or an even turn it is nothing, and of one that begins or ends it is something for one
+and a half periods. So the lower quartile of two periods and more is the sway's, unless something begins or ends all the
+time. How often the body sways is not known, so several periods are tried: with one that is too long or too short by a
+third the third difference is a quarter as large or less. Of a sine the quartile tells the mean, of noise it is less:
+the sway is at least as large. So it is with the heave, for which the road's grade is what driving is for the tilt.
 """
 
 import math
-from statistics import median
+from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from msgspec import Struct
 
 from companion.core.data import Array
+from link.records import replace
 
-_APART_MIN_S = 0.045  # of velocities that are kept: a fifteenth of a period
+_APART_MIN_S = 0.045  # of velocities that are kept: a fifteenth of the shortest period
 _APART_MAX_S = 0.45  # between which a velocity is not known
-_KEPT_S = 1.5  # more than the three halves of a period and one gap
-_MEDIAN_OVER_S = 5.0
-_MEDIAN_FROM_S = 1.0
-_GAIN = 8.0  # of the third difference, at half a period
-_NOISE_GAIN = 20.0  # of its variance: 1 + 9 + 9 + 1
+_SEEN_S = 8.0
+_SEEN_FROM = 4.0  # half periods
+_SHARE = 0.25
+_MEAN_PER_QUARTILE = 0.5 / math.sin(math.pi / 8.0) ** 2  # of a sine's square
+_THIRD = np.array([1.0, -3.0, 3.0, -1.0])
+_GAIN_2 = 64.0  # of its square for a sine, at half a period
+_NOISE_GAIN_2 = 20.0  # of its variance: 1 + 9 + 9 + 1
 
-Entries = tuple[tuple[float, float, float], ...]
-"""Times, s, and two numbers of each, newest first."""
+
+class Shown(NamedTuple):
+    """How large the variance of the sway's velocity is at least, and by which of the periods."""
+
+    variance_m2_s2: float = 0.0
+    period: int = 0
 
 
-class ToAndFro(Struct, frozen=True, kw_only=True):
+class ToAndFro(Struct, frozen=True, kw_only=True, eq=False):
     """What was told.
 
     Attributes:
         now_s: of its own clock.
-        velocities_m_s: of the last moments, east and north.
-        squares_m2_s2: of the sway's velocity along the course and across it, of the last seconds.
+        told: (n, 4) the velocities of the last moments, newest first: time, east, north and up.
+        squares: (m, 1 + 3 k) of the sway's velocity in the last seconds, m^2/s^2, newest first: the time, along the
+            course by each of k periods, across it and up; NaN of a period for which too little was told.
+        along: what is shown along the course.
+        across: likewise.
+        up: likewise.
     """
 
     now_s: float = 0.0
-    velocities_m_s: Entries = ()
-    squares_m2_s2: Entries = ()
+    told: Array = np.empty((0, 4))
+    squares: Array | None = None
+    along: Shown = Shown()
+    across: Shown = Shown()
+    up: Shown = Shown()
 
 
 def passed(seen: ToAndFro, dt_s: float) -> ToAndFro:
     """Return what was seen `dt_s` later."""
     if dt_s == 0.0:
         return seen
-    return ToAndFro(now_s=seen.now_s + dt_s, velocities_m_s=seen.velocities_m_s, squares_m2_s2=seen.squares_m2_s2)
+    return replace(seen, now_s=seen.now_s + dt_s)
 
 
-def watch(seen: ToAndFro, velocity: Array, covariance: Array, half_period_s: float) -> ToAndFro:
+def watch(seen: ToAndFro, velocity: Array, covariance: Array, half_periods_s: Sequence[float]) -> ToAndFro:
     """Return what was seen with what is told now.
 
     Args:
         seen: so far.
         velocity: (3,) of the antenna in W, m/s.
         covariance: (3, 3) of its error.
-        half_period_s: of the body.
+        half_periods_s: k that the body may have, rising.
     """
-    now_s, before = seen.now_s, seen.velocities_m_s
-    if before and now_s - before[0][0] < _APART_MIN_S:
+    now_s = seen.now_s
+    if len(seen.told) and now_s - seen.told[0, 0] < _APART_MIN_S:
         return seen
-    velocities = ((now_s, float(velocity[0]), float(velocity[1])), *_since(before, now_s - _KEPT_S))
-    squares = _since(seen.squares_m2_s2, now_s - _MEDIAN_OVER_S)
-    told = [_told_at(velocities, now_s - i * half_period_s) for i in range(4)]
-    known = [one for one in told if one is not None]
-    if len(known) == len(told):
-        noise_m2_s2 = _NOISE_GAIN * 0.5 * float(covariance[0, 0] + covariance[1, 1])
-        squares = ((now_s, *_squares(np.array(known), noise_m2_s2)), *squares)
-    return ToAndFro(now_s=now_s, velocities_m_s=velocities, squares_m2_s2=squares)
+    halves_s, kept_s = np.array(half_periods_s), 3.0 * half_periods_s[-1] + _APART_MAX_S
+    told = np.vstack((np.append(now_s, velocity), seen.told[seen.told[:, 0] > now_s - kept_s]))
+    level_m2_s2 = 0.5 * float(covariance[0, 0] + covariance[1, 1])
+    noise_m2_s2 = np.repeat((level_m2_s2, level_m2_s2, covariance[2, 2]), len(halves_s))
+    squares = np.append(now_s, _squares(told, halves_s, noise_m2_s2))[np.newaxis]
+    if seen.squares is not None and seen.squares.shape[1] == squares.shape[1]:
+        squares = np.vstack((squares, seen.squares[seen.squares[:, 0] > now_s - _SEEN_S]))
+    along, across, up = (_first_peak(one) for one in np.split(_least(squares, halves_s), 3))
+    return ToAndFro(now_s=now_s, told=told, squares=squares, along=along, across=across, up=up)
 
 
-def least_variances_m2_s2(seen: ToAndFro) -> tuple[float, float]:
-    """Return how large the variance of the sway's velocity is at least, along the course and across it."""
-    squares = seen.squares_m2_s2
-    if not squares or squares[0][0] - squares[-1][0] < _MEDIAN_FROM_S:
-        return 0.0, 0.0
-    return max(median(one[1] for one in squares), 0.0), max(median(one[2] for one in squares), 0.0)
+def _squares(told: Array, half_periods_s: Array, noise_m2_s2: Array) -> Array:
+    """Return (3 k,) the squares of the sway's velocity along the course, across it and up."""
+    wanted_s = told[0, 0] - half_periods_s[:, np.newaxis] * np.arange(4.0)
+    times_s = told[::-1, 0]
+    after = times_s.searchsorted(wanted_s - 1e-9).clip(1, max(len(times_s) - 1, 1))
+    if len(times_s) < 2:
+        return np.full(len(noise_m2_s2), np.nan)
+    apart_s = times_s[after] - times_s[after - 1]
+    known = (apart_s <= _APART_MAX_S).all(axis=1) & (wanted_s[:, -1] > times_s[0] - 1e-9)
+    east, north, up = (np.interp(wanted_s, times_s, told[::-1, column]) for column in (1, 2, 3))
+    speed, course_east, course_north = np.hypot(east, north), east.sum(axis=1), north.sum(axis=1)
+    turned = np.arctan2(
+        course_east[:, np.newaxis] * north - course_north[:, np.newaxis] * east,
+        course_east[:, np.newaxis] * east + course_north[:, np.newaxis] * north,
+    )
+    velocities = np.concatenate((speed @ _THIRD, speed.mean(axis=1) * (turned @ _THIRD), up @ _THIRD))
+    return np.where(np.tile(known, 3), (velocities**2 - _NOISE_GAIN_2 * noise_m2_s2) / _GAIN_2, np.nan)
 
 
-def _since(entries: Entries, from_s: float) -> Entries:
-    kept = len(entries)
-    while kept and entries[kept - 1][0] < from_s:
-        kept -= 1
-    return entries[:kept]
+def _least(squares: Array, half_periods_s: Array) -> Array:
+    """Return (3 k,) how large the variance of the sway's velocity is at least, by each period."""
+    times_s, values = squares[:, 0], squares[:, 1:]
+    is_told = ~np.isnan(values)
+    since_s = np.where(is_told, times_s[:, np.newaxis], times_s[0]).min(axis=0)
+    ranked = np.sort(values, axis=0)  # what is not told comes last
+    rank = (_SHARE * np.maximum(is_told.sum(axis=0) - 1, 0)).astype(np.intp)
+    least = _MEAN_PER_QUARTILE * ranked[rank, np.arange(values.shape[1])]
+    from_s = _SEEN_FROM * np.tile(half_periods_s, 3)
+    return np.where((times_s[0] - since_s >= from_s) & (least > 0.0), least, 0.0)
 
 
-def _told_at(velocities: Entries, t_s: float) -> tuple[float, float] | None:
-    """Return the velocity at a time, evenly between the two about it; None where nothing was told."""
-    for i, (before_s, east, north) in enumerate(velocities):
-        if before_s > t_s + 1e-9:
-            continue
-        after_s, after_east, after_north = velocities[max(i - 1, 0)]
-        apart_s = after_s - before_s
-        if apart_s > _APART_MAX_S:
-            return None
-        share = (t_s - before_s) / apart_s if apart_s > 0.0 else 0.0
-        return east + share * (after_east - east), north + share * (after_north - north)
-    return None
-
-
-def _squares(told: Array, noise_m2_s2: float) -> tuple[float, float]:
-    """Return the squares of the sway's velocity along and across the course, of four velocities (4, 2)."""
-    third = np.array([1.0, -3.0, 3.0, -1.0])
-    along = float(third @ np.hypot(told[:, 0], told[:, 1]))
-    east, north = told.sum(axis=0).tolist()
-    change_east, change_north = (third @ told).tolist()
-    across = (east * change_north - north * change_east) / max(math.hypot(east, north), 1e-9)
-    return (along**2 - noise_m2_s2) / _GAIN**2, (across**2 - noise_m2_s2) / _GAIN**2
+def _first_peak(variances: Array) -> Shown:
+    """Return the variance by the period that shows most, and which; three times as long a one shows as much."""
+    peak, last = 0, len(variances) - 1
+    while peak < last and variances[peak + 1] >= variances[peak]:
+        peak += 1
+    return Shown(float(variances[peak]), peak)

@@ -28,7 +28,7 @@ BRAKES_AT_S, BRAKES_M_S2 = 25.0, 6.0
 Memory = DelayBuffer[ImmState]
 
 
-def swaying(sway_m_s: float) -> Drive:
+def swaying(sway_m_s: float, sway_rad_s: float = SWAY_RAD_S) -> Drive:
     """Steady driving, then a brake, of a vehicle whose antenna sways along the track."""
 
     def speed(t_s: float) -> float:
@@ -37,8 +37,8 @@ def swaying(sway_m_s: float) -> Drive:
     truth = drive(27.0, speed, lambda _: 0.0)
     t = np.arange(len(truth.yaw)) * TRUTH_STEP_S
     along = np.column_stack([np.cos(truth.yaw), np.sin(truth.yaw), np.zeros(len(t))])
-    rate = sway_m_s * np.cos(SWAY_RAD_S * t)
-    place = sway_m_s / SWAY_RAD_S * np.sin(SWAY_RAD_S * t)
+    rate = sway_m_s * np.cos(sway_rad_s * t)
+    place = sway_m_s / sway_rad_s * np.sin(sway_rad_s * t)
     return replace(
         truth,
         position=truth.position + place[:, None] * along,
@@ -47,6 +47,18 @@ def swaying(sway_m_s: float) -> Drive:
 
 
 CLIMBS_AT_S, CLIMBS_WITHIN_S = 12.0, 2.0
+
+
+def heaving(heave_m_s: float, heave_rad_s: float) -> Drive:
+    """Steady driving of a vehicle whose antenna goes up and down."""
+    truth = drive(22.0, lambda _: SPEED_M_S, lambda _: 0.0)
+    t = np.arange(len(truth.yaw)) * TRUTH_STEP_S
+    up = np.array([0.0, 0.0, heave_m_s])
+    return replace(
+        truth,
+        position=truth.position + np.outer(np.sin(heave_rad_s * t) / heave_rad_s, up),
+        velocity=truth.velocity + np.outer(np.cos(heave_rad_s * t), up),
+    )
 
 
 def climbing(grade: float) -> Drive:
@@ -119,13 +131,43 @@ def test_sway_far_larger_than_it_was_taken_to_be_is_not_driving(sway_m_s: float,
     assert rms([speed - SPEED_M_S for speed in speeds]) < 0.4 * sway_m_s / math.sqrt(2.0)
 
 
+@pytest.mark.parametrize("rate_hz", [5.0, 10.0, 20.0])
+@pytest.mark.parametrize("sway_hz", [0.7, 1.0])
+def test_slow_sway_is_not_driving_either(sway_hz: float, rate_hz: float) -> None:
+    sway_m_s, car = 0.5, Deck(antenna_to_pad_m=(0.0, 0.0, -0.1), pad_height_m=1.5)
+    receiver = Sensors(fix_std_m=0.02, velocity_std_m_s=0.05, rate_hz=rate_hz)
+    watcher = Watcher(swaying(sway_m_s, 2.0 * math.pi * sway_hz), car, receiver)
+    speeds = [watcher.motion_at(t_s)[0] for t_s in np.arange(8.0, 18.0, 0.1)]
+    assert rms([speed - SPEED_M_S for speed in speeds]) < 0.5 * sway_m_s / math.sqrt(2.0)
+    assert watcher.state.sway is not None
+    assert watcher.state.sway.pitch.frequency_rad_s == pytest.approx(2.0 * math.pi * sway_hz, rel=0.25)
+
+
+@pytest.mark.parametrize("rate_hz", [5.0, 10.0])
+@pytest.mark.parametrize("heave_hz", [0.5, 0.7, 1.0])
+def test_heave_is_no_grade(heave_hz: float, rate_hz: float) -> None:
+    heave_m_s, heave_rad_s = 0.3, 2.0 * math.pi * heave_hz
+    receiver = Sensors(fix_std_m=0.02, velocity_std_m_s=0.05, rate_hz=rate_hz)
+    watcher = Watcher(heaving(heave_m_s, heave_rad_s), sensors=receiver)
+    errors_m_s = []
+    for t_s in np.arange(10.0, 20.0, 0.1):
+        watcher.until(t_s)
+        forecast = watcher.chosen.forecast(watcher.memory, now_ns(t_s), np.array([0.0, 0.4]))
+        assert forecast is not None
+        true_m_s = heave_m_s * np.cos(heave_rad_s * (t_s + np.array([0.0, 0.4])))
+        errors_m_s.append(forecast.velocity_enu_m_s[:, 2] - true_m_s)
+    now, later = np.sqrt(np.mean(np.square(errors_m_s), axis=0))
+    assert now < 0.6 * heave_m_s / math.sqrt(2.0)
+    assert later < 1.3 * heave_m_s / math.sqrt(2.0)  # taken for a grade it is 1.7 to 2.2
+
+
 def test_how_much_a_body_sways_is_learnt() -> None:
     found = []
     for sway_m_s in (0.0, SWAY_M_S):
         watcher = Watcher(swaying(sway_m_s))
         watcher.until(BRAKES_AT_S)
         assert watcher.state.sway is not None
-        found.append(math.sqrt(watcher.state.sway.rate_variances_rad2_s2[1]))
+        found.append(math.sqrt(watcher.state.sway.pitch.rate_variance))
     still, swings = found
     assert swings == pytest.approx(SWAY_M_S / HEIGHT_M / math.sqrt(2.0), rel=0.3)
     assert still < 0.5 * swings
@@ -154,13 +196,14 @@ def learn_all(sway: BodySway, modes: Modes, seconds: float) -> BodySway:
 
 
 def learnt(sway: BodySway, modes: Modes, seconds: float) -> Array:
-    return np.array(learn_all(sway, modes, seconds).rate_variances_rad2_s2)
+    sway = learn_all(sway, modes, seconds)
+    return np.array([sway.roll.rate_variance, sway.pitch.rate_variance])
 
 
 def test_sway_that_nothing_shows_stays_as_it_was_taken_to_be() -> None:
     sway = first_sway(CONFIG.sway)
-    before = sway.rate_variances_rad2_s2
-    assert learnt(sway, modes_of(before[0]), 30.0) == pytest.approx(before)
+    before = sway.roll.rate_variance
+    assert learnt(sway, modes_of(before), 30.0) == pytest.approx(np.full(2, before))
 
 
 def test_what_is_known_of_a_rate_and_what_is_not_make_its_variance_together() -> None:
@@ -170,13 +213,13 @@ def test_what_is_known_of_a_rate_and_what_is_not_make_its_variance_together() ->
 
 def test_heave_is_a_smooth_roads_until_more_of_it_is_seen() -> None:
     sway = first_sway(CONFIG.sway)
-    modes = modes_of(sway.rate_variances_rad2_s2[0])
-    modes[1][0, HEAVE_RATE, HEAVE_RATE] = sway.heave_rate_variance_m2_s2
-    assert math.sqrt(learn_all(sway, modes, 30.0).heave_rate_variance_m2_s2) == pytest.approx(0.047, abs=0.001)
+    modes = modes_of(sway.roll.rate_variance)
+    modes[1][0, HEAVE_RATE, HEAVE_RATE] = sway.heave.rate_variance
+    assert math.sqrt(learn_all(sway, modes, 30.0).heave.rate_variance) == pytest.approx(0.047, abs=0.001)
     modes[0][0, HEAVE_RATE], modes[1][0, HEAVE_RATE, HEAVE_RATE] = 0.2, 0.01
     shaken = learn_all(sway, modes, 600.0)
-    assert shaken.heave_rate_variance_m2_s2 == pytest.approx(0.2**2 + 0.01, rel=1e-3)
-    assert shaken.rate_variances_rad2_s2 == pytest.approx(sway.rate_variances_rad2_s2)
+    assert shaken.heave.rate_variance == pytest.approx(0.2**2 + 0.01, rel=1e-3)
+    assert [shaken.roll.rate_variance, shaken.pitch.rate_variance] == pytest.approx([sway.roll.rate_variance] * 2)
 
 
 @pytest.mark.parametrize("grade", [0.12, -0.12])
