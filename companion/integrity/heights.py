@@ -99,4 +99,5 @@ def is_seen_too_near(s: Situation, c: CompanionConfig) -> bool:
     about_m = c.touchdown.range_finder.off_max_m
     if s.pad.is_coarse:
         about_m = max(about_m, _COARSE_OFF_M, _STDS * float(s.pad.position_std_m[0, 2]))
-    return a.height_m - seen_m > about_m + c.integrity.ground_slope_max * a.distance_m
+    nearer_m = a.height_m - s.pad.frame_offset.higher_m - seen_m
+    return nearer_m > about_m + c.integrity.ground_slope_max * a.distance_m

@@ -26,12 +26,15 @@ class FrameOffset(Struct, frozen=True, kw_only=True):
         std_m: its standard deviation.
         is_height_told: how far apart the heights are was told lately: only what they wander apart since is unknown.
         is_confirmed: as many sightings have agreed on it, for as long, as it takes to believe them.
+        higher_m: by how much the pad seems to be higher than it is said to be, by the road that the drone's range
+            finder has seen; 0 where its height was told lately.
     """
 
     distance_m: float | None = None
     std_m: float = math.inf
     is_height_told: bool = False
     is_confirmed: bool = True
+    higher_m: float = 0.0
 
 
 class PadMounting(Struct, frozen=True, kw_only=True):
@@ -95,7 +98,12 @@ class PadPath(Struct, frozen=True, kw_only=True, eq=False):
 
 
 def pad_path(
-    forecast: Forecast, pad: PadGeometry | None, *, has_one_frame: bool = True, is_confirmed: bool = True
+    forecast: Forecast,
+    pad: PadGeometry | None,
+    *,
+    has_one_frame: bool = True,
+    is_confirmed: bool = True,
+    higher_m: float = 0.0,
 ) -> PadPath:
     """Return where the pad will be.
 
@@ -110,6 +118,7 @@ def pad_path(
         pad: the vehicle's own description, None until it has answered.
         has_one_frame: both receivers' positions are in one frame.
         is_confirmed: the sightings of the pad have agreed for long enough.
+        higher_m: than it is said to be, by the road that was seen.
     """
     lever_m = pad.antenna_to_pad_m if pad is not None else (0.0, 0.0, 0.0)
     position, velocity = _at_end_of(lever_m, forecast)
@@ -139,7 +148,7 @@ def pad_path(
         grade=0.0 if forecast.grade is None else float(forecast.grade[0]),
         swing=deck,
         unplaced=NOT_DESCRIBED if pad is None else HEADING_UNKNOWN if _is_about(forecast, pad) else None,
-        frame_offset=_frame_offset(forecast, is_confirmed=is_confirmed),
+        frame_offset=_frame_offset(forecast, is_confirmed=is_confirmed, higher_m=higher_m),
     )
 
 
@@ -153,7 +162,7 @@ def slope_at(pad: PadPath, offset_s: float) -> Array:
     return slope
 
 
-def _frame_offset(forecast: Forecast, *, is_confirmed: bool) -> FrameOffset:
+def _frame_offset(forecast: Forecast, *, is_confirmed: bool, higher_m: float) -> FrameOffset:
     offset = forecast.frame_offset_enu_m
     distance_m = None if offset is None else math.hypot(*offset.tolist())
     return FrameOffset(
@@ -161,6 +170,7 @@ def _frame_offset(forecast: Forecast, *, is_confirmed: bool) -> FrameOffset:
         std_m=forecast.frame_offset_std_m,
         is_height_told=forecast.is_height_told,
         is_confirmed=is_confirmed,
+        higher_m=0.0 if forecast.is_height_told else higher_m,
     )
 
 

@@ -11,7 +11,8 @@ import numpy as np
 
 from companion.config.touchdown import TouchdownConfig
 from companion.core.data import Array, Measurement, Quantity, RangeReading
-from companion.vehicle.range_watch import beam_of
+from companion.vehicle.range_watch import RangeWatch, beam_of
+from link.messages import PadGeometry
 from link.records import replace
 
 _AGE_MAX_NS = 500_000_000  # what is older says nothing new
@@ -19,6 +20,7 @@ _TOO_HIGH_M = 1.0  # what is so far above the pad is not the pad: a person, a lo
 _TOO_LOW_M = 2.0  # two standard deviations of how far apart heights are before anything told them
 _STDS = 2.0
 _STEP_MIN_M = 0.6  # an own height wanders by as much in the time that is looked back: that is no step to a roof
+_ROOF_TOO_HIGH_M = 4.0  # and so far above, what rises from the road by as much as the pad does is not it either
 
 
 def surface_measurements(
@@ -71,14 +73,31 @@ def pad_height_seen(
         slope_enu: by which the deck rises towards east and north, m per m.
         half_width_m: from the pad's centre to the nearest edge.
         above_road_m: the pad's height above the road or the water: what is nearer to these is not the pad, unless it
-            rises by more than half of that, and 0.6 m.
+            rises by more than half of that, and 0.6 m. What rises by just as much is the pad, however high it is.
     """
     east_m, north_m, up_m = (surface.value[:3] - pad_enu_m).tolist()
     half_m, rises_m = 0.5 * above_road_m, float(surface.value[3])
     may_be_road = half_m > 0.0 and rises_m < max(half_m, _STEP_MIN_M)
     lowest_m = -min(half_m, _TOO_LOW_M) if may_be_road else -_TOO_LOW_M
+    is_roof = not may_be_road and half_m > 0.0 and abs(rises_m - above_road_m) < _STEP_MIN_M
     is_beside = math.hypot(east_m, north_m) + _STDS * pad_std_m > half_width_m
-    if is_beside or not lowest_m < up_m < _TOO_HIGH_M:
+    if is_beside or not lowest_m < up_m < (_ROOF_TOO_HIGH_M if is_roof else _TOO_HIGH_M):
         return None
     height_m = float(surface.value[2]) - slope_enu[0] * east_m - slope_enu[1] * north_m
     return replace(surface, value=np.array([height_m]), covariance=surface.covariance[2:3, 2:3])
+
+
+def higher_by_road_m(watch: RangeWatch, pad: PadGeometry | None, config: TouchdownConfig) -> float:
+    """Return by how much the pad is higher than it is said to be, by the road that was seen lately; 0 for a lower one.
+
+    The road is the lowest that was seen, so that neither a roof nor what stands beside the road counts for it.
+
+    Args:
+        watch: of the range finder.
+        pad: on the vehicle, None until that has described it.
+        config: where the range finder is.
+    """
+    if pad is None or pad.is_afloat or not watch.lowest:
+        return 0.0
+    road_m = watch.lowest[0][1] + config.range_finder.height_m - config.gear_height_m
+    return max(road_m + pad.height_m - pad.antenna_to_pad_m[2], 0.0)

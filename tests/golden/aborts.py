@@ -215,7 +215,7 @@ ABORTS: dict[str, Abort] = {
     "seen_too_near": Abort(
         reason=Reason.SEEN_TOO_NEAR,
         phase=Phase.ALIGN,
-        fault=_pad_is_described(forward_m=0.0, up_m=-_WRONG_M),
+        fault=_pad_is_described(forward_m=0.0, up_m=-_WRONG_M, over_road_m=-_WRONG_M),
     ),
     "contact_lost": Abort(
         reason=Reason.ABOVE_AFTER_CONTACT,

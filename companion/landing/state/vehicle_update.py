@@ -25,7 +25,7 @@ from companion.vehicle.hindsight import forget_instants, update_hindsight
 from companion.vehicle.pad import PadPath, pad_path
 from companion.vehicle.pad_reach import is_agreement_old
 from companion.vehicle.range_watch import RangeWatch, moved_up, watch_ranges
-from companion.vehicle.surface import surface_measurements
+from companion.vehicle.surface import higher_by_road_m, surface_measurements
 from companion.vehicle.velocity_lag import dated_velocities, learn_lag
 from link.records import replace
 
@@ -160,7 +160,13 @@ def predict_pad(
         has_one_frame = _are_frames_one(vehicle, inputs, system)
         sightings = vehicle.sightings if phase in _APPROACHING else forget_step(vehicle.sightings)
         vehicle = replace(vehicle, sightings=sightings) if sightings is not vehicle.sightings else vehicle
-        pad = pad_path(forecast, inputs.vehicle.pad, has_one_frame=has_one_frame, is_confirmed=sightings.is_confirmed)
+        pad = pad_path(
+            forecast,
+            inputs.vehicle.pad,
+            has_one_frame=has_one_frame,
+            is_confirmed=sightings.is_confirmed,
+            higher_m=higher_by_road_m(vehicle.ranges, inputs.vehicle.pad, system.config.touchdown),
+        )
         if is_agreement_old(pad, system.config):
             vehicle = replace(vehicle, sightings=forget_agreement(sightings))
         return vehicle, without_contradicted_heading(pad, vehicle.course)

@@ -23,6 +23,11 @@ def unseen_height_m(height_m: float, pad: PadPath, config: CompanionConfig) -> f
     return max(height_m, min(clear_m, config.chase.unseen_height_max_m))
 
 
+def clear_height_m(height_m: float, pad: PadPath, config: CompanionConfig) -> float:
+    """Return how high the drone stays above where a pad is said to be, so as to be `height_m` above where it may be."""
+    return max(unseen_height_m(height_m, pad, config), height_m + pad.frame_offset.higher_m)
+
+
 def chase_height_m(pad: PadPath, reference: ReferenceState, config: CompanionConfig) -> float:
     """Come down towards the height of alignment as the horizontal distance closes, two metres for each.
 
@@ -32,10 +37,10 @@ def chase_height_m(pad: PadPath, reference: ReferenceState, config: CompanionCon
     if config.silent_vehicle is not None:
         return _sight_height_m(pad, reference, config)
     if is_vague(pad, config) or is_unseen(pad, config):
-        return unseen_height_m(config.chase.height_m, pad, config)
+        return clear_height_m(config.chase.height_m, pad, config)
     distance_m = math.hypot(*(reference.position_enu_m[:2] - pad.position_enu_m[0, :2]).tolist())
     beyond_m = max(distance_m - config.descent.alignment.begin_distance_m, 0.0)
-    return min(config.descent.alignment.height_m + 0.5 * beyond_m, config.chase.height_m)
+    return min(config.descent.alignment.height_m + 0.5 * beyond_m, config.chase.height_m) + pad.frame_offset.higher_m
 
 
 def _sight_height_m(pad: PadPath, reference: ReferenceState, config: CompanionConfig) -> float:

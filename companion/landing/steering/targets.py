@@ -13,7 +13,7 @@ from companion.config.companion import CompanionConfig
 from companion.config.descent import DescentConfig
 from companion.config.planning import GuidanceKind, LandingStyle
 from companion.core.data import Array, FlightLimits
-from companion.landing.steering.following_height import chase_floor_m, chase_height_m, unseen_height_m
+from companion.landing.steering.following_height import chase_floor_m, chase_height_m, clear_height_m
 from companion.planning.descent_path import descent_path
 from companion.planning.guidance import ReferenceState, Target
 from companion.situation.phases import Phase
@@ -124,7 +124,7 @@ def pad_aim(
         velocity_enu_m_s=velocity,
         acceleration_enu_m_s2=accelerated,
     )
-    floor = pad.position_enu_m[:, 2] + feet_offset_m + _clearance_m(phase, config)
+    floor = pad.position_enu_m[:, 2] + feet_offset_m + _clearance_m(phase, pad, config)
     touched = _touched_enu_m(pad, height, target, feet_offset_m, config) if phase is Phase.DESCEND else None
     return Aim(target=target, floor_enu_m=floor, touched_enu_m=touched)
 
@@ -201,9 +201,9 @@ def _height_m(phase: Phase, pad: PadPath, reference: ReferenceState, config: Com
     """Return the wanted height over the pad of a phase that does not land."""
     match phase:
         case Phase.ABORT:
-            return unseen_height_m(config.abort.height_m, pad, config)
+            return clear_height_m(config.abort.height_m, pad, config)
         case Phase.ALIGN:
-            return config.descent.alignment.height_m
+            return config.descent.alignment.height_m + pad.frame_offset.higher_m
         case _ if config.guidance.style is LandingStyle.DIRECT:
             return 0.0
         case _:
@@ -221,14 +221,14 @@ def changes_speed(pad: PadPath, config: DescentConfig) -> bool:
     return along_m_s2 > config.wait.speed_change_max_m_s2
 
 
-def _clearance_m(phase: Phase, config: CompanionConfig) -> float:
-    """Return how far the feet stay above the pad: nothing where it is to be touched."""
+def _clearance_m(phase: Phase, pad: PadPath, config: CompanionConfig) -> float:
+    """Return how far the feet stay above where the pad is said to be: nothing where it is to be touched."""
     match phase:
         case Phase.DESCEND | Phase.TOUCHDOWN:
             return NO_FLOOR_M
         case Phase.CHASE if config.guidance.style is LandingStyle.DIRECT:
             return NO_FLOOR_M
         case Phase.ALIGN:
-            return 0.6 * config.descent.alignment.height_m
+            return 0.6 * config.descent.alignment.height_m + pad.frame_offset.higher_m
         case _:
-            return chase_floor_m(config)
+            return chase_floor_m(config) + pad.frame_offset.higher_m

@@ -1,6 +1,7 @@
 """What the range finder sees of the deck: a height of the pad, as far as it is of the pad."""
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 import pytest
@@ -11,8 +12,10 @@ from companion.core.data import Array, Measurement, OwnState, Quantity, RangeRea
 from companion.vehicle.estimator import Estimator
 from companion.vehicle.factory import make_estimator
 from companion.vehicle.imm_numbers import Deck
-from companion.vehicle.surface import pad_height_seen, surface_measurements
+from companion.vehicle.range_watch import RangeWatch, watch_ranges
+from companion.vehicle.surface import higher_by_road_m, pad_height_seen, surface_measurements
 from link.frames.rotations import quaternion_from_roll_pitch_yaw
+from link.messages import PadGeometry
 from link.records import replace
 from tests.companion.vehicle.drives import ANTENNA_TO_PAD_M, DEGRADED, NOMINAL, Drive, Sensors, climb, drive, straight
 from tests.companion.vehicle.rides import arrivals, now_ns
@@ -161,6 +164,10 @@ def test_only_what_is_surely_within_the_pad_is_the_pads(away_m: Place, std_m: fl
         (-2.1, 5.0, 0.0, False),
         (0.9, ROOF_M, 0.0, True),
         (1.1, ROOF_M, 3.0, False),  # somebody stands on it
+        (2.3, ROOF_M, 1.3, True),  # the road is as much higher than it is said to be
+        (2.3, ROOF_M, 0.5, False),
+        (4.1, ROOF_M, 1.5, False),
+        (1.2, 0.3, 0.4, False),
         (-0.9, 0.0, 0.0, True),  # a pad on the ground has no road below
         (1.1, 0.0, 0.0, False),
     ],
@@ -169,6 +176,37 @@ def test_road_and_what_stands_on_the_pad_are_not_the_pads(
     up_m: float, above_road_m: float, rises_m: float, *, is_pad: bool
 ) -> None:
     assert (_seen((0.0, 0.0, up_m), above_road_m=above_road_m, rises_m=rises_m) is not None) is is_pad
+
+
+ROOF = PadGeometry(antenna_to_pad_m=(-0.4, 0.0, -0.1), size_m=(1.5, 1.5), height_m=ROOF_M)
+
+
+def _watched(surfaces_m: Sequence[float], antenna_m: float) -> RangeWatch:
+    """What is kept of surfaces that were seen one after the other, with the vehicle's antenna as high as given."""
+    watch, up_m = RangeWatch(), CONFIG.range_finder.height_m - CONFIG.gear_height_m
+    for i, surface_m in enumerate(surfaces_m):
+        seen = _reading()
+        own = replace(seen.own, t_ns=now_ns(0.05 * i)) if seen.own is not None else None
+        told = replace(seen, t_ns=now_ns(0.05 * i), distance_m=5.0 + up_m - surface_m, own=own)
+        watch, _ = watch_ranges(watch, told, antenna_m)
+    return watch
+
+
+@pytest.mark.parametrize("higher_m", [-1.0, 0.0, 0.7, 2.3])
+def test_pad_is_as_much_higher_as_the_road_that_is_seen(higher_m: float) -> None:
+    antenna_m, road_m = ROOF_M + 0.1, higher_m
+    seen = _watched([road_m] * 8, antenna_m)
+    assert higher_by_road_m(seen, ROOF, CONFIG) == pytest.approx(max(higher_m, 0.0))
+    over_roof = _watched([road_m] * 8 + [road_m + ROOF_M] * 8, antenna_m)
+    assert higher_by_road_m(over_roof, ROOF, CONFIG) == pytest.approx(max(higher_m, 0.0))
+
+
+def test_road_tells_nothing_before_it_was_seen_of_a_pad_that_is_not_described_or_on_the_water() -> None:
+    seen = _watched([2.0] * 8, ROOF_M + 0.1)
+    assert higher_by_road_m(seen, ROOF, CONFIG) > 1.9
+    assert higher_by_road_m(RangeWatch(), ROOF, CONFIG) == 0.0
+    assert higher_by_road_m(seen, None, CONFIG) == 0.0
+    assert higher_by_road_m(seen, replace(ROOF, is_afloat=True), CONFIG) == 0.0
 
 
 def test_height_is_that_of_the_centre_of_a_deck_that_slopes() -> None:

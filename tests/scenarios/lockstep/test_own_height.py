@@ -1,18 +1,22 @@
 """Landings by fixes alone, with a drone whose own height wanders as PX4's does: its range finder tells the pad's."""
 
+import math
+
 import pytest
 
 from companion.core.reasons import Reason
 from companion.situation.phases import Phase
 from link.records import replace
-from scenarios.catalogue.catalogue import load_changed_scenario
+from scenarios.catalogue.catalogue import load_changed_scenario, load_scenario
 from scenarios.config import FIRMWARES, FirmwareName
 from scenarios.lockstep.lockstep import Lockstep
 from scenarios.recordings.result import score_run
+from scenarios.scoring.score import Tier
 
 HEIGHT_STD_M = 0.6
 """Its rate is a tenth of this a second; that of PX4 in its own simulation is 0.09 m/s."""
 DATA_SHEET = {"white_m": 0.03, "min_m": 0.1, "max_m": 12.0}
+ON_ROOF_M = 1.0
 SOFT_M_S = 0.75
 """Planned contacts sink at 0.5 m/s (docs/landing.md); what the height drifts by comes on top, and 0.15 m/s of luck."""
 
@@ -32,6 +36,17 @@ def test_pad_is_met_softly_though_the_drones_own_height_wanders(seed: int, firmw
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("firmware", FIRMWARES)
+def test_chase_stays_above_a_roof_whose_height_the_road_below_contradicts(firmware: FirmwareName) -> None:
+    """In this world the drone's own height is 2 m off: it was flown into the roof while it chased the car."""
+    scenario, seed = load_scenario(f"world@79027+firmware={firmware}"), 79027
+    run = Lockstep(scenario, seed)
+    run.run()
+    assert score_run(scenario, seed, run.recording).tier in (Tier.S1, Tier.S2, Tier.S3)
+    assert Reason.SEEN_TOO_NEAR.name not in {status.reason_code for status in run.recording.statuses}
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize("left_m", [-1.8, 1.8])
 def test_road_beside_the_vehicle_is_not_landed_on_where_the_pad_is_described_there(left_m: float) -> None:
     """The range finder sees the road 1.5 m below: not the pad with the drone's own height so wrong."""
@@ -46,13 +61,28 @@ def test_road_beside_the_vehicle_is_not_landed_on_where_the_pad_is_described_the
 
 
 class _Nearer:
-    """Errors of a range finder that sees what stands on the pad, or hangs before it."""
+    """Errors of a range finder that sees what stands on the pad."""
 
-    def __init__(self, nearer_m: float) -> None:
+    def __init__(self, run: Lockstep, nearer_m: float) -> None:
+        self._run = run
         self._nearer_m = nearer_m
 
     def advance(self) -> float:
-        return -self._nearer_m
+        return -self._nearer_m if self._is_over_vehicle() else 0.0
+
+    def _is_over_vehicle(self) -> bool:
+        vehicle = self._run.simulation.vehicle.state
+        if vehicle is None:
+            return False
+        x, y, _ = self._run.simulation.autopilot.state.position_enu_m.tolist()
+        return math.hypot(x - vehicle.position_enu_m[0], y - vehicle.position_enu_m[1]) < ON_ROOF_M
+
+
+class _AlwaysNearer(_Nearer):
+    """Errors of a range finder that something hangs before."""
+
+    def _is_over_vehicle(self) -> bool:
+        return True
 
 
 @pytest.mark.slow
@@ -62,7 +92,21 @@ def test_what_stands_on_the_pad_higher_than_a_metre_is_not_landed_on(
 ) -> None:
     scenario = load_changed_scenario("straight_5", ["system.companion.abort.retries_max=0"])
     run = Lockstep(scenario, seed=1)
-    monkeypatch.setattr(run.simulation.autopilot, "_range_errors", _Nearer(nearer_m))
+    monkeypatch.setattr(run.simulation.autopilot, "_range_errors", _Nearer(run, nearer_m))
     run.run()
     assert score_run(scenario, 1, run.recording).touchdown is None
     assert Reason.SEEN_TOO_NEAR.name in {status.reason_code for status in run.recording.statuses}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("nearer_m", [1.2, 2.0])
+def test_drone_whose_range_finder_sees_something_everywhere_touches_nothing(
+    nearer_m: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """To it the road is as much higher as the roof: it looks for the pad there, in the air."""
+    scenario = load_changed_scenario("straight_5", ["system.companion.abort.retries_max=0"])
+    run = Lockstep(scenario, seed=1)
+    monkeypatch.setattr(run.simulation.autopilot, "_range_errors", _AlwaysNearer(run, nearer_m))
+    run.run()
+    assert score_run(scenario, 1, run.recording).touchdown is None
+    assert run.companion.phase is Phase.HOLD

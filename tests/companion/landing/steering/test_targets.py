@@ -7,7 +7,7 @@ from companion.config.companion import CompanionConfig
 from companion.landing.steering.targets import HORIZON_OFFSETS_S, hover_aim, pad_aim, stopping_point, way_down
 from companion.planning.guidance import ReferenceState
 from companion.situation.phases import Phase
-from companion.vehicle.pad import PadPath
+from companion.vehicle.pad import FrameOffset, PadPath
 from link.records import replace
 
 CONFIG = CompanionConfig()
@@ -72,6 +72,10 @@ def test_phases_before_the_descent_keep_the_feet_above_the_pad(phase: Phase) -> 
     aim = pad_aim(phase, pad, _at(0.0, -2.0, 5.0), FEET_M, CONFIG, limits=LIMITS)
     assert np.all(aim.floor_enu_m > pad.position_enu_m[:, 2] + FEET_M)
     assert np.all(aim.target.position_enu_m[:, 2] >= aim.floor_enu_m)
+    higher = replace(pad, frame_offset=FrameOffset(higher_m=2.3))
+    raised = pad_aim(phase, higher, _at(0.0, -2.0, 5.0), FEET_M, CONFIG, limits=LIMITS)
+    np.testing.assert_allclose(raised.floor_enu_m, aim.floor_enu_m + 2.3)
+    np.testing.assert_allclose(raised.target.position_enu_m[:, 2], aim.target.position_enu_m[:, 2] + 2.3)
 
 
 def test_chase_comes_lower_as_the_distance_closes() -> None:
