@@ -9,14 +9,25 @@ import numpy as np
 
 from companion.core.data import Array
 from companion.vehicle.compiled import compiled_kernel
-from companion.vehicle.imm_kernels import BEND
-from companion.vehicle.imm_mixing import Modes, combine, glide, heading_variance, shifted, steps_of, with_direction
-from companion.vehicle.imm_noise import BEND_ACCELERATION_STD, BEND_STD
+from companion.vehicle.imm_kernels import BEND, course
+from companion.vehicle.imm_mixing import (
+    Modes,
+    combine,
+    glide,
+    heading_variance,
+    is_heading_known,
+    shifted,
+    steps_of,
+    with_direction,
+)
+from companion.vehicle.imm_noise import AFLOAT, BEND_ACCELERATION_STD, BEND_STD
 from companion.vehicle.imm_sensors import antenna_velocity, horizontal_acceleration
 from companion.vehicle.imm_swing import MOUNT, OWN_RATE, ROLL, SIZE, antenna_swing, pad_swing, pad_swing_acceleration
 from companion.vehicle.small_matrices import carried_through, times
 
 SAME_S = 1e-9  # of two steps that differ by rounding only
+_REVERSES_M_S = 0.5  # slower than this backwards, a vehicle that is pushed backwards is one that brakes
+_SLIPS_M_S = 0.3  # aside: more is no error of a receiver
 
 
 @compiled_kernel
@@ -56,6 +67,40 @@ def kinematics_jacobian(x: Array, motion: Array) -> Array:
     G[8, 4], G[8, 5], G[8, 9], G[8, BEND] = x[9] * hx, x[9] * hy, pull, forward**2
     G[8, 7] = x[9] * (hx * x[5] - hy * x[4]) + 2.0 * forward * x[BEND] * (hx * x[3] - hy * x[2])
     return G
+
+
+@compiled_kernel
+def braked_straight(x: Array, within_s: float, tau_s: float, knows_heading: bool) -> Array:
+    """Return the state (25,) with what moves it aside taken off, as far as it brakes to a standstill `within_s`.
+
+    What accelerates a vehicle aside without turning it is an error of the filter. It would turn a velocity that fades
+    about, and a vehicle that brakes to a stop would be forecast to drive backwards, as one would that stands by now.
+
+    Args:
+        x: state (25,).
+        within_s: time to look ahead.
+        tau_s: time constant of the acceleration.
+        knows_heading: whether the heading says where ahead is; if not, the course does.
+    """
+    _, ux, uy = course(x)
+    if knows_heading:
+        ux, uy = math.cos(x[7]), math.sin(x[7])
+        if ux * x[2] + uy * x[3] < -_REVERSES_M_S:
+            ux, uy = -ux, -uy
+    ahead, aside = ux * x[2] + uy * x[3], ux * x[3] - uy * x[2]
+    push, push_aside = ux * x[4] + uy * x[5], ux * x[5] - uy * x[4]
+    brakes_m_s = -push * tau_s * (1.0 - math.exp(-within_s / tau_s))
+    y = x.copy()
+    if brakes_m_s > max(-ahead, 0.0) and ahead <= 0.0 and abs(aside) < _SLIPS_M_S:
+        y[2:6] = 0.0
+        return y
+    share = min(max(2.0 - 2.0 * brakes_m_s / max(ahead, 1e-6), 0.0), 1.0)  # of what is aside: none where it stops
+    push_aside *= share
+    if abs(aside) < _SLIPS_M_S:
+        aside *= share
+    y[2], y[3] = ahead * ux - aside * uy, ahead * uy + aside * ux
+    y[4], y[5] = push * ux - push_aside * uy, push * uy + push_aside * ux
+    return y
 
 
 @compiled_kernel
@@ -113,6 +158,9 @@ def forecast_modes(
     directed = with_direction(motion, modes, known_variance)
     x, P = combine(modes[0], modes[1], modes[2])
     x[OWN_RATE] = 0.0  # the drone goes with its own height
+    knows_heading = is_heading_known(modes, known_variance)
+    if noises[0, AFLOAT] == 0.0:  # a vessel drifts
+        x = braked_straight(x, offset_s[-1], motion[0], knows_heading)
     noise = (modes[2].reshape(-1, 1) * noises).sum(axis=0)
     for std in (BEND_STD, BEND_ACCELERATION_STD):  # the others in which the modes differ are densities
         noise[std] = math.sqrt((modes[2] * noises[:, std] ** 2).sum())

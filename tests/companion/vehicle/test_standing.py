@@ -13,7 +13,7 @@ from companion.vehicle.imm_swing import SIZE
 from link.frames.rotations import wrap_angle
 from link.records import replace
 from tests.companion.vehicle.drives import ANTENNA_TO_PAD_M, NOMINAL, Drive, drive, pad_centre
-from tests.companion.vehicle.rides import Ride, estimator, ride
+from tests.companion.vehicle.rides import Ride, arrivals, estimator, now_ns, ride
 
 FIX_AND_VELOCITY = replace(NOMINAL, heading_std_rad=0.0, yaw_rate_std_rad_s=0.0)
 SAME_FRAME = EstimatorConfig(
@@ -25,6 +25,11 @@ STOPS_S, ENDS_S = 12.0, 40.0
 def stopping() -> Drive:
     """7 m/s, a brake of 6 m/s^2 at 10 s, then half a minute at rest."""
     return drive(ENDS_S + 1.0, lambda t: min(max(7.0 - 6.0 * (t - 10.0), 0.0), 7.0), lambda _: 0.0)
+
+
+def stopping_in_a_bend() -> Drive:
+    """8 m/s, and from 8 s on a brake of 2 m/s^2 in a bend of 12.5 m."""
+    return drive(16.0, lambda t: min(max(8.0 - 2.0 * (t - 8.0), 0.0), 8.0), lambda t: 0.08 if t > 8.0 else 0.0)
 
 
 def turning_on_the_spot() -> Drive:
@@ -51,6 +56,33 @@ def yaws(done: Ride, from_s: float) -> Array:
 def test_standing_vehicle_keeps_the_heading_with_which_it_stopped(seed: int) -> None:
     yaw = yaws(estimated(stopping(), seed, with_imu=False), STOPS_S)
     assert np.abs(yaw - yaw[0]).max() < math.radians(3.0)
+
+
+@pytest.mark.parametrize("with_imu", [True, False])
+@pytest.mark.parametrize("seed", range(4))
+def test_vehicle_that_brakes_in_a_bend_is_not_forecast_to_drive_backwards(seed: int, *, with_imu: bool) -> None:
+    waiting = arrivals(stopping_in_a_bend(), NOMINAL if with_imu else FIX_AND_VELOCITY, seed)[::-1]
+    chosen, memory, backwards_m_s = estimator(EstimatorKind.IMM, SAME_FRAME), None, []
+    for t_s in np.arange(9.5, 14.0, 0.1):
+        batch = []
+        while waiting and waiting[-1].t_ns <= now_ns(t_s):
+            batch.append(waiting.pop())
+        memory = chosen.fuse(memory, batch)
+        forecast = chosen.forecast(memory, now_ns(t_s), np.arange(0.0, 4.01, 0.2))
+        assert forecast is not None
+        assert forecast.yaw_rad is not None
+        east_m_s, north_m_s, _ = forecast.velocity_enu_m_s.T
+        ahead_m_s = np.cos(forecast.yaw_rad) * east_m_s + np.sin(forecast.yaw_rad) * north_m_s
+        backwards_m_s.append(max(-ahead_m_s))
+    assert max(backwards_m_s) < 0.3  # it was 3 to 4.5
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_vehicle_that_reverses_is_forecast_to_go_on_doing_so(seed: int) -> None:
+    truth = drive(16.0, lambda t: min(max(-2.0, 4.0 - 1.0 * max(t - 5.0, 0.0)), 4.0), lambda _: 0.0)
+    done = ride(estimator(EstimatorKind.IMM, SAME_FRAME), truth, NOMINAL, seed, from_s=13.0, ahead_s=1.0)
+    moved_m = done.ahead[:, :2] - np.array([one.position_enu_m[:2] for one in done.estimates])
+    assert np.hypot(*moved_m.T) == pytest.approx(2.0, abs=0.4)
 
 
 def test_pad_of_a_vehicle_that_stands_for_long_is_not_forgotten() -> None:
