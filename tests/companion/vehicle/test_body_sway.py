@@ -28,37 +28,28 @@ BRAKES_AT_S, BRAKES_M_S2 = 25.0, 6.0
 Memory = DelayBuffer[ImmState]
 
 
-def swaying(sway_m_s: float, sway_rad_s: float = SWAY_RAD_S) -> Drive:
-    """Steady driving, then a brake, of a vehicle whose antenna sways along the track."""
+def braking() -> Drive:
+    """Steady driving, then a brake."""
+    return drive(27.0, lambda t: SPEED_M_S - BRAKES_M_S2 * min(max(t - BRAKES_AT_S, 0.0), 1.0), lambda _: 0.0)
 
-    def speed(t_s: float) -> float:
-        return SPEED_M_S - BRAKES_M_S2 * min(max(t_s - BRAKES_AT_S, 0.0), 1.0)
 
-    truth = drive(27.0, speed, lambda _: 0.0)
+def shaken(truth: Drive, rate_m_s: float, rad_s: float, axis: Array) -> Drive:
+    """The same with an antenna that goes to and fro along an axis (3,)."""
     t = np.arange(len(truth.yaw)) * TRUTH_STEP_S
-    along = np.column_stack([np.cos(truth.yaw), np.sin(truth.yaw), np.zeros(len(t))])
-    rate = sway_m_s * np.cos(sway_rad_s * t)
-    place = sway_m_s / sway_rad_s * np.sin(sway_rad_s * t)
+    place, rate = rate_m_s * np.sin(rad_s * t) / rad_s, rate_m_s * np.cos(rad_s * t)
     return replace(
-        truth,
-        position=truth.position + place[:, None] * along,
-        velocity=truth.velocity + rate[:, None] * along,
+        truth, position=truth.position + np.outer(place, axis), velocity=truth.velocity + np.outer(rate, axis)
     )
+
+
+def swaying(sway_m_s: float, sway_rad_s: float = SWAY_RAD_S) -> Drive:
+    """A brake of a vehicle whose antenna sways along the straight track."""
+    truth = braking()
+    along = np.array([math.cos(truth.yaw[0]), math.sin(truth.yaw[0]), 0.0])
+    return shaken(truth, sway_m_s, sway_rad_s, along)
 
 
 CLIMBS_AT_S, CLIMBS_WITHIN_S = 12.0, 2.0
-
-
-def heaving(heave_m_s: float, heave_rad_s: float) -> Drive:
-    """Steady driving of a vehicle whose antenna goes up and down."""
-    truth = drive(22.0, lambda _: SPEED_M_S, lambda _: 0.0)
-    t = np.arange(len(truth.yaw)) * TRUTH_STEP_S
-    up = np.array([0.0, 0.0, heave_m_s])
-    return replace(
-        truth,
-        position=truth.position + np.outer(np.sin(heave_rad_s * t) / heave_rad_s, up),
-        velocity=truth.velocity + np.outer(np.cos(heave_rad_s * t), up),
-    )
 
 
 def climbing(grade: float) -> Drive:
@@ -148,7 +139,7 @@ def test_slow_sway_is_not_driving_either(sway_hz: float, rate_hz: float) -> None
 def test_heave_is_no_grade(heave_hz: float, rate_hz: float) -> None:
     heave_m_s, heave_rad_s = 0.3, 2.0 * math.pi * heave_hz
     receiver = Sensors(fix_std_m=0.02, velocity_std_m_s=0.05, rate_hz=rate_hz)
-    watcher = Watcher(heaving(heave_m_s, heave_rad_s), sensors=receiver)
+    watcher = Watcher(shaken(braking(), heave_m_s, heave_rad_s, np.array([0.0, 0.0, 1.0])), sensors=receiver)
     errors_m_s = []
     for t_s in np.arange(10.0, 20.0, 0.1):
         watcher.until(t_s)

@@ -85,17 +85,23 @@ class _AlwaysNearer(_Nearer):
         return True
 
 
+def _flown(nearer_m: float, errors: type[_Nearer], monkeypatch: pytest.MonkeyPatch) -> Lockstep:
+    """A landing that must touch nothing, with these errors of the range finder."""
+    scenario = load_changed_scenario("straight_5", ["system.companion.abort.retries_max=0"])
+    run = Lockstep(scenario, seed=1)
+    monkeypatch.setattr(run.simulation.autopilot, "_range_errors", errors(run, nearer_m))
+    run.run()
+    assert score_run(scenario, 1, run.recording).touchdown is None
+    return run
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("nearer_m", [1.2, 2.0])
 def test_what_stands_on_the_pad_higher_than_a_metre_is_not_landed_on(
     nearer_m: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    scenario = load_changed_scenario("straight_5", ["system.companion.abort.retries_max=0"])
-    run = Lockstep(scenario, seed=1)
-    monkeypatch.setattr(run.simulation.autopilot, "_range_errors", _Nearer(run, nearer_m))
-    run.run()
-    assert score_run(scenario, 1, run.recording).touchdown is None
-    assert Reason.SEEN_TOO_NEAR.name in {status.reason_code for status in run.recording.statuses}
+    statuses = _flown(nearer_m, _Nearer, monkeypatch).recording.statuses
+    assert Reason.SEEN_TOO_NEAR.name in {status.reason_code for status in statuses}
 
 
 @pytest.mark.slow
@@ -104,9 +110,4 @@ def test_drone_whose_range_finder_sees_something_everywhere_touches_nothing(
     nearer_m: float, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """To it the road is as much higher as the roof: it looks for the pad there, in the air."""
-    scenario = load_changed_scenario("straight_5", ["system.companion.abort.retries_max=0"])
-    run = Lockstep(scenario, seed=1)
-    monkeypatch.setattr(run.simulation.autopilot, "_range_errors", _AlwaysNearer(run, nearer_m))
-    run.run()
-    assert score_run(scenario, 1, run.recording).touchdown is None
-    assert run.companion.phase is Phase.HOLD
+    assert _flown(nearer_m, _AlwaysNearer, monkeypatch).companion.phase is Phase.HOLD
