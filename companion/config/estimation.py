@@ -5,9 +5,9 @@
 """
 
 from enum import Enum
-from typing import Annotated
+from typing import Annotated, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from link.program.toml_config import NotNegative, Positive, StrictModel
 
@@ -132,9 +132,17 @@ class SwayConfig(StrictModel):
     tilt_std_rad: Positive = 0.002  # 5 mm of height from axle to axle: on smooth asphalt
     heave_std_m: Positive = 0.005  # likewise
     frequency_hz: Positive = 1.5  # at which bodies pitch and roll on their wheels (Gillespie 1992, chapter 5)
-    frequency_min_hz: Positive = 0.6  # of the softest springs, and of a road whose waves sway a body themselves
+    # Of the softest springs, and of a road whose waves sway a body themselves. What is slower than 0.25 Hz does not
+    # show in the 8 s for which an antenna is watched.
+    frequency_min_hz: Annotated[float, Field(ge=0.25)] = 0.6
     damping: Annotated[float, Field(gt=0.0, lt=1.0)] = 0.3  # of the critical one; dampers have 0.2 to 0.4
     prior_s: Positive = 5.0  # for which this counts as watched: some swings
+
+    @model_validator(mode="after")
+    def _is_slowest_below_first(self) -> Self:
+        if self.frequency_min_hz > self.frequency_hz:
+            raise ValueError(f"frequency_min_hz must not be above frequency_hz, {self.frequency_hz:g}")
+        return self
 
 
 class HeadingConfig(StrictModel):

@@ -91,6 +91,8 @@ def braked_straight(x: Array, within_s: float, tau_s: float, knows_heading: bool
     push, push_aside = ux * x[4] + uy * x[5], ux * x[5] - uy * x[4]
     brakes_m_s = -push * tau_s * (1.0 - math.exp(-within_s / tau_s))
     y = x.copy()
+    if ux == 0.0 and uy == 0.0:  # at rest, and nothing says where ahead is
+        return y
     if brakes_m_s > max(-ahead, 0.0) and ahead <= 0.0 and abs(aside) < _SLIPS_M_S:
         y[2:6] = 0.0
         return y

@@ -62,6 +62,12 @@ def watch_ranges(watch: RangeWatch, seen: RangeReading, vehicle_up_m: float | No
     return replace(watch, vehicle_up_m=vehicle_up_m, lowest=lowest), over_m - lowest[0][1]
 
 
+def lowest_over_m(watch: RangeWatch, t_ns: int) -> float | None:
+    """Return how high over the vehicle the lowest surface is that was seen lately, None where nothing was."""
+    oldest_ns = t_ns - round(_LATELY_S * 1e9)
+    return next((over_m for seen_ns, over_m in watch.lowest if seen_ns >= oldest_ns), None)
+
+
 def moved_up(watch: RangeWatch, up_m: float) -> RangeWatch:
     """Return the watch in a W that the drone has stepped up in by `up_m`, with all that it sees.
 

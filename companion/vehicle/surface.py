@@ -11,7 +11,7 @@ import numpy as np
 
 from companion.config.touchdown import TouchdownConfig
 from companion.core.data import Array, Measurement, Quantity, RangeReading
-from companion.vehicle.range_watch import RangeWatch, beam_of
+from companion.vehicle.range_watch import RangeWatch, beam_of, lowest_over_m
 from link.messages import PadGeometry
 from link.records import replace
 
@@ -87,17 +87,19 @@ def pad_height_seen(
     return replace(surface, value=np.array([height_m]), covariance=surface.covariance[2:3, 2:3])
 
 
-def higher_by_road_m(watch: RangeWatch, pad: PadGeometry | None, config: TouchdownConfig) -> float:
+def higher_by_road_m(watch: RangeWatch, t_ns: int, pad: PadGeometry | None, config: TouchdownConfig) -> float:
     """Return by how much the pad is higher than it is said to be, by the road that was seen lately; 0 for a lower one.
 
     The road is the lowest that was seen, so that neither a roof nor what stands beside the road counts for it.
 
     Args:
         watch: of the range finder.
+        t_ns: now.
         pad: on the vehicle, None until that has described it.
         config: where the range finder is.
     """
-    if pad is None or pad.is_afloat or not watch.lowest:
+    over_m = lowest_over_m(watch, t_ns)
+    if pad is None or pad.is_afloat or over_m is None:
         return 0.0
-    road_m = watch.lowest[0][1] + config.range_finder.height_m - config.gear_height_m
+    road_m = over_m + config.range_finder.height_m - config.gear_height_m
     return max(road_m + pad.height_m - pad.antenna_to_pad_m[2], 0.0)

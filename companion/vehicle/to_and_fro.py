@@ -83,7 +83,7 @@ def watch(seen: ToAndFro, velocity: Array, covariance: Array, half_periods_s: Se
     level_m2_s2 = 0.5 * float(covariance[0, 0] + covariance[1, 1])
     noise_m2_s2 = np.repeat((level_m2_s2, level_m2_s2, covariance[2, 2]), len(halves_s))
     squares = np.append(now_s, _squares(told, halves_s, noise_m2_s2))[np.newaxis]
-    if seen.squares is not None and seen.squares.shape[1] == squares.shape[1]:
+    if seen.squares is not None:
         squares = np.vstack((squares, seen.squares[seen.squares[:, 0] > now_s - _SEEN_S]))
     along, across, up = (_first_peak(one) for one in np.split(_least(squares, halves_s), 3))
     return ToAndFro(now_s=now_s, told=told, squares=squares, along=along, across=across, up=up)
@@ -91,11 +91,10 @@ def watch(seen: ToAndFro, velocity: Array, covariance: Array, half_periods_s: Se
 
 def _squares(told: Array, half_periods_s: Array, noise_m2_s2: Array) -> Array:
     """Return (3 k,) the squares of the sway's velocity along the course, across it and up."""
-    wanted_s = told[0, 0] - half_periods_s[:, np.newaxis] * np.arange(4.0)
-    times_s = told[::-1, 0]
-    after = times_s.searchsorted(wanted_s - 1e-9).clip(1, max(len(times_s) - 1, 1))
-    if len(times_s) < 2:
+    if len(told) < 2:
         return np.full(len(noise_m2_s2), np.nan)
+    wanted_s, times_s = told[0, 0] - half_periods_s[:, np.newaxis] * np.arange(4.0), told[::-1, 0]
+    after = times_s.searchsorted(wanted_s - 1e-9).clip(1, len(times_s) - 1)
     apart_s = times_s[after] - times_s[after - 1]
     known = (apart_s <= _APART_MAX_S).all(axis=1) & (wanted_s[:, -1] > times_s[0] - 1e-9)
     east, north, up = (np.interp(wanted_s, times_s, told[::-1, column]) for column in (1, 2, 3))

@@ -165,7 +165,7 @@ def predict_pad(
             inputs.vehicle.pad,
             has_one_frame=has_one_frame,
             is_confirmed=sightings.is_confirmed,
-            higher_m=higher_by_road_m(vehicle.ranges, inputs.vehicle.pad, system.config.touchdown),
+            higher_m=higher_by_road_m(vehicle.ranges, inputs.t_ns, inputs.vehicle.pad, system.config.touchdown),
         )
         if is_agreement_old(pad, system.config):
             vehicle = replace(vehicle, sightings=forget_agreement(sightings))

@@ -62,6 +62,11 @@ def test_mistake_is_one_line_that_names_file_and_key(tmp_path: Path, text: str, 
         ("[guidance.mpc]\nmoves_s = [1e-12]\n", r"moves_s\[0\] = 1e-12"),
         ("[guidance.mpc]\nnode_spacing_max_s = 1e-6\n", r"node_spacing_max_s = 1e-06 .* at least 0\.01"),
         ("[descent]\ncommit_height_m = 0.7\n", r"commit_height_m, 0\.7, must be less than the heights of wait, 0\.7"),
+        (
+            "[estimator.imm.sway]\nfrequency_hz = 0.5\n",
+            r"estimator\.imm\.sway .* frequency_min_hz must not be above frequency_hz, 0\.5",
+        ),
+        ("[estimator.imm.sway]\nfrequency_min_hz = 0.1\n", r"frequency_min_hz = 0\.1 .* at least 0\.25"),
     ],
     ids=[
         "refusal never told",
@@ -74,6 +79,8 @@ def test_mistake_is_one_line_that_names_file_and_key(tmp_path: Path, text: str, 
         "move too short",
         "nodes too near",
         "commit above the wait",
+        "slowest sway above the first",
+        "sway slower than it is watched for",
     ],
 )
 def test_numbers_that_do_not_go_together_are_refused(tmp_path: Path, text: str, said: str) -> None:

@@ -121,6 +121,12 @@ def test_braking_stops_where_the_fading_acceleration_stops_it() -> None:
     assert after[0] == pytest.approx(stop.y_events[0][0][0], abs=1e-9)
 
 
+def test_vehicle_at_rest_whose_heading_is_unknown_is_forecast_as_it_is() -> None:
+    state = a_state(3)
+    state[2:4] = 0.0
+    np.testing.assert_array_equal(forecasts.braked_straight(state, 4.0, 1.0, False), state)
+
+
 def _at_standstill(_: float, s: Array) -> float:
     return float(s[1])
 

@@ -28,7 +28,7 @@ CONFIG = TouchdownConfig()
 SIGHTED = replace(NOMINAL, pad_rate_hz=30.0)
 SIGHTED_S = 3.0
 RANGED_HZ = 20.0
-NOW_NS = now_ns(0.05)
+NOW_NS, LATER_NS = now_ns(0.05), now_ns(1.0)
 
 
 def _estimator(kind: EstimatorKind = EstimatorKind.IMM, half_width_m: float = HALF_WIDTH_M) -> Estimator:
@@ -196,17 +196,21 @@ def _watched(surfaces_m: Sequence[float], antenna_m: float) -> RangeWatch:
 def test_pad_is_as_much_higher_as_the_road_that_is_seen(higher_m: float) -> None:
     antenna_m, road_m = ROOF_M + 0.1, higher_m
     seen = _watched([road_m] * 8, antenna_m)
-    assert higher_by_road_m(seen, ROOF, CONFIG) == pytest.approx(max(higher_m, 0.0))
+    assert higher_by_road_m(seen, LATER_NS, ROOF, CONFIG) == pytest.approx(max(higher_m, 0.0))
     over_roof = _watched([road_m] * 8 + [road_m + ROOF_M] * 8, antenna_m)
-    assert higher_by_road_m(over_roof, ROOF, CONFIG) == pytest.approx(max(higher_m, 0.0))
+    assert higher_by_road_m(over_roof, LATER_NS, ROOF, CONFIG) == pytest.approx(max(higher_m, 0.0))
 
 
-def test_road_tells_nothing_before_it_was_seen_of_a_pad_that_is_not_described_or_on_the_water() -> None:
+def test_road_tells_nothing_before_it_was_seen_and_long_after() -> None:
     seen = _watched([2.0] * 8, ROOF_M + 0.1)
-    assert higher_by_road_m(seen, ROOF, CONFIG) > 1.9
-    assert higher_by_road_m(RangeWatch(), ROOF, CONFIG) == 0.0
-    assert higher_by_road_m(seen, None, CONFIG) == 0.0
-    assert higher_by_road_m(seen, replace(ROOF, is_afloat=True), CONFIG) == 0.0
+    assert higher_by_road_m(RangeWatch(), LATER_NS, ROOF, CONFIG) == 0.0
+    assert higher_by_road_m(seen, LATER_NS, ROOF, CONFIG) > 1.9
+    assert higher_by_road_m(seen, now_ns(11.0), ROOF, CONFIG) == 0.0
+
+
+@pytest.mark.parametrize("pad", [None, replace(ROOF, is_afloat=True)], ids=["not_described", "afloat"])
+def test_road_tells_nothing_of_a_pad_that_is_not_described_or_afloat(pad: PadGeometry | None) -> None:
+    assert higher_by_road_m(_watched([2.0] * 8, ROOF_M + 0.1), LATER_NS, pad, CONFIG) == 0.0
 
 
 def test_height_is_that_of_the_centre_of_a_deck_that_slopes() -> None:
