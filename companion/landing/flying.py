@@ -8,12 +8,12 @@ from companion.landing.carried_on import limit_rates
 from companion.landing.decisions.conditions import is_fix_old
 from companion.landing.decisions.waiting import waits_at_m
 from companion.landing.sortie.aims import advance_way, sortie_aim
-from companion.landing.sortie.riding import has_not_left_deck
+from companion.landing.sortie.riding import is_carried_by_deck, model_on_deck
 from companion.landing.state.memory import ModelMemory, StepMemory
 from companion.landing.state.step_data import StepInputs, System
 from companion.landing.steering.ahead import make_up, model_along, shift_aim
 from companion.landing.steering.flown_plan import extrapolate, flown_plan, state_at
-from companion.landing.steering.following_height import waiting_rise_m
+from companion.landing.steering.following_height import rise_from_ground_m, waiting_rise_m
 from companion.landing.steering.sway import update_sway
 from companion.landing.steering.targets import Aim, hover_aim, is_at_rest, pad_aim, stopping_point
 from companion.landing.steering.virtual_model import Tracking, add_to_past, state_then
@@ -25,8 +25,6 @@ from companion.vehicle.pad import PadPath
 from companion.vehicle.pad_reach import left_behind_m
 from link.frames.rotations import wrap_angle
 from link.records import replace
-
-_LIFT_M = 0.3  # so far above it a drone on the deck is asked to be, for PX4 takes off towards a setpoint above it
 
 
 def _aim(
@@ -53,16 +51,9 @@ def _aim(
         case Phase.HOLD | Phase.TOUCHDOWN:  # what touches a pad that nobody knows any more stays where it is
             return hover_aim(anchor if phase is Phase.HOLD else reference.position_enu_m)
         case _:
-            rise_m = _waiting_rise_m(phase, float(waiting_point[2]), situation, config)
+            looks = phase is Phase.WAITING and not is_fix_old(situation, config)
+            rise_m = waiting_rise_m(float(waiting_point[2]), situation, config) if looks else 0.0
             return hover_aim(waiting_point + np.array([0.0, 0.0, rise_m]))
-
-
-def _waiting_rise_m(phase: Phase, waiting_enu_m: float, situation: Situation, config: CompanionConfig) -> float:
-    pad = situation.pad
-    if phase is not Phase.WAITING or pad is None or is_fix_old(situation, config):
-        return 0.0
-    height_m = waiting_enu_m - situation.feet_offset_m - float(pad.position_enu_m[0, 2])
-    return waiting_rise_m(height_m, pad, config)
 
 
 def fly(
@@ -92,6 +83,7 @@ def fly(
         model = replace(model, tracking=add_to_past(model.tracking, inputs.monotonic_ns, reference))
     memory = replace(memory, model=(model := replace(model, reference=reference)))
     limits = _plan_limits(memory, situation, inputs, system.config)
+    memory = _wait_above_ground(memory, situation, period_s, system.config)
     memory = advance_way(memory, situation, limits, system.config)
     aim = shift_aim(_aim(memory, situation, inputs.limits, limits, system.config), ahead_s)
     tracking = add_to_past(model.tracking, starts_ns, start)
@@ -123,6 +115,18 @@ def fly(
         yaw_setpoint_rad=_slew_yaw_rad(memory, situation.pad, period_s + late_s, system.config),
     )
     return _update_anchor(replace(memory, model=model), situation, system.config), plan
+
+
+def _wait_above_ground(
+    memory: StepMemory, situation: Situation, period_s: float, config: CompanionConfig
+) -> StepMemory:
+    point = memory.places.waiting_point_enu_m
+    if memory.progress.phase is not Phase.WAITING or point is None:
+        return memory
+    up_m = rise_from_ground_m(float(point[2]), situation, period_s, config)
+    if up_m == 0.0:
+        return memory
+    return replace(memory, places=replace(memory.places, waiting_point_enu_m=point + np.array([0.0, 0.0, up_m])))
 
 
 def _plan_limits(memory: StepMemory, situation: Situation, inputs: StepInputs, config: CompanionConfig) -> FlightLimits:
@@ -157,8 +161,8 @@ def _at_drone(
     """
     drone, sinking = situation.drone, _is_left_by_pad(memory, situation, config)
     lifts_by_itself = memory.progress.phase is Phase.LIFT_OFF and memory.control.driver.climbs_by_itself
-    if drone is not None and (lifts_by_itself or _stands_on_deck(memory, situation, config)):
-        return _with_deck(drone, memory.progress.phase, situation, config)
+    if drone is not None and (lifts_by_itself or is_carried_by_deck(memory.progress.phase, situation, config)):
+        return model_on_deck(drone, memory.progress.phase, situation, config)
     if drone is None or not (memory.control.driver.climbs_by_itself or sinking):
         return reference
     depth_m, sink_m_s = (
@@ -167,25 +171,6 @@ def _at_drone(
     return ReferenceState(
         position_enu_m=drone.position_enu_m - np.array([0.0, 0.0, depth_m]),
         velocity_enu_m_s=np.array([0.0, 0.0, -sink_m_s]),
-        acceleration_enu_m_s2=np.zeros(3),
-    )
-
-
-def _stands_on_deck(memory: StepMemory, situation: Situation, config: CompanionConfig) -> bool:
-    phase = memory.progress.phase
-    return phase is Phase.ON_DECK or (phase is Phase.LIFT_OFF and has_not_left_deck(situation, config))
-
-
-def _with_deck(drone: Drone, phase: Phase, situation: Situation, config: CompanionConfig) -> ReferenceState:
-    """Return the model of a drone that is carried by the deck: below it, or above it to lift off, at its velocity.
-
-    The setpoint has the deck's velocity from the first instant, so that no lift-off begins with a brake.
-    """
-    velocity = drone.velocity_enu_m_s if situation.pad is None else situation.pad.velocity_enu_m_s[0]
-    up_m = _LIFT_M if phase is Phase.LIFT_OFF else -config.descent.sink.press_depth_m
-    return ReferenceState(
-        position_enu_m=drone.position_enu_m + np.array([0.0, 0.0, up_m]),
-        velocity_enu_m_s=velocity,
         acceleration_enu_m_s2=np.zeros(3),
     )
 

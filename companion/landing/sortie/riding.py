@@ -1,6 +1,8 @@
-"""Whether the drone stands on the vehicle and is carried off by it, so that no take-off may go on there; pure."""
+"""A drone that stands on the vehicle: whether that carries it off, and where its setpoints are; pure."""
 
 import math
+
+import numpy as np
 
 from companion.autopilots.messages import is_arming
 from companion.config.companion import CompanionConfig
@@ -10,8 +12,11 @@ from companion.landing.decisions.conditions import Condition, cause_of, holds
 from companion.landing.decisions.entries import Decision
 from companion.landing.sortie.over_vehicle import ON_ROOF_M, stands_on_deck
 from companion.landing.state.memory import ControlMemory, Held
+from companion.planning.guidance import ReferenceState
 from companion.situation.phases import Event, Phase
-from companion.situation.situation import Situation, vehicle_stands
+from companion.situation.situation import Drone, Situation, vehicle_stands
+
+_LIFT_M = 0.3  # so far above it a drone on the deck is asked to be, for PX4 takes off towards a setpoint above it
 
 
 def has_not_left_deck(s: Situation, config: CompanionConfig) -> bool:
@@ -23,6 +28,25 @@ def has_not_left_deck(s: Situation, config: CompanionConfig) -> bool:
         return s.autopilot.landed is True
     stands = _touches(s, config) if s.autopilot.landed is None else s.autopilot.landed
     return stands and stands_on_deck(s, VEHICLE_M, ON_ROOF_M)
+
+
+def is_carried_by_deck(phase: Phase, s: Situation, config: CompanionConfig) -> bool:
+    """Return whether the drone is on the deck in a phase that begins there."""
+    return phase is Phase.ON_DECK or (phase is Phase.LIFT_OFF and has_not_left_deck(s, config))
+
+
+def model_on_deck(drone: Drone, phase: Phase, s: Situation, config: CompanionConfig) -> ReferenceState:
+    """Return the model of a drone that is carried by the deck: below it, or above it to lift off, at its velocity.
+
+    The setpoint has the deck's velocity from the first instant, so that no lift-off begins with a brake.
+    """
+    velocity = drone.velocity_enu_m_s if s.pad is None else s.pad.velocity_enu_m_s[0]
+    up_m = _LIFT_M if phase is Phase.LIFT_OFF else -config.descent.sink.press_depth_m
+    return ReferenceState(
+        position_enu_m=drone.position_enu_m + np.array([0.0, 0.0, up_m]),
+        velocity_enu_m_s=velocity,
+        acceleration_enu_m_s2=np.zeros(3),
+    )
 
 
 def _touches(s: Situation, config: CompanionConfig) -> bool:

@@ -10,6 +10,8 @@ from companion.situation.situation import Situation
 from companion.vehicle.pad import PadPath
 from companion.vehicle.pad_reach import is_unseen, is_vague
 
+_RISES_M_S = 0.5  # ten times as fast as a barometer drifts; a single reading of an insect moves it by a centimetre
+
 
 def unseen_height_m(height_m: float, pad: PadPath, config: CompanionConfig) -> float:
     """Return how high the drone stays above a pad that it has to see first, and `height_m` above any other.
@@ -67,19 +69,35 @@ def vague_height_m(pad: PadPath, config: CompanionConfig) -> float:
     return min(config.chase.unseen_height_stds * float(pad.position_std_m[0, 2]), config.chase.unseen_height_max_m)
 
 
-def waiting_rise_m(height_m: float, pad: PadPath, config: CompanionConfig) -> float:
+def waiting_rise_m(waiting_enu_m: float, s: Situation, config: CompanionConfig) -> float:
     """Return how much higher the drone waits for a pad whose height is vague, to be clear of where its roof may be.
 
     A roof that is said to be too high for the chase may well be lower: the drone climbs and looks. One that is too high
     by more than what its height is unsure is refused.
 
     Args:
-        height_m: of the place where the drone is to wait above the pad.
-        pad: as it is told.
+        waiting_enu_m: height in W of the place where the drone is to wait.
+        s: the facts.
         config: all numbers.
     """
-    lacking_m, unsure_m = chase_floor_m(config) - height_m, vague_height_m(pad, config)
+    if s.pad is None:
+        return 0.0
+    height_m = waiting_enu_m - s.feet_offset_m - float(s.pad.position_enu_m[0, 2])
+    lacking_m, unsure_m = chase_floor_m(config) - height_m, vague_height_m(s.pad, config)
     return min(lacking_m + config.takeoff.reached_distance_m, unsure_m) if 0.0 < lacking_m < unsure_m else 0.0
+
+
+def rise_from_ground_m(waiting_enu_m: float, s: Situation, dt_s: float, config: CompanionConfig) -> float:
+    """Return by how much the waiting point rises in `dt_s`, so as to be as high over what the range finder sees.
+
+    The drone's own height wanders by metres while it waits (a barometer), and nothing else sees the ground come nearer.
+    It does not come down again: what is below may have been a roof that drove on.
+    """
+    seen_m = s.below.range_height_m
+    if s.drone is None or seen_m is None:
+        return 0.0
+    wanted_enu_m = float(s.drone.position_enu_m[2]) - seen_m + config.takeoff.waiting_height_m
+    return min(max(wanted_enu_m - waiting_enu_m, 0.0), _RISES_M_S * dt_s)
 
 
 def climb_m(height_enu_m: float, s: Situation, config: CompanionConfig) -> float:

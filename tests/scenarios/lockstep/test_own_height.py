@@ -4,6 +4,7 @@ import math
 
 import pytest
 
+from companion.config.companion import CompanionConfig
 from companion.core.reasons import Reason
 from companion.situation.phases import Phase
 from link.records import replace
@@ -17,6 +18,8 @@ HEIGHT_STD_M = 0.6
 """Its rate is a tenth of this a second; that of PX4 in its own simulation is 0.09 m/s."""
 DATA_SHEET = {"white_m": 0.03, "min_m": 0.1, "max_m": 12.0}
 ON_ROOF_M = 1.0
+SAGS_M = 0.5
+"""By this a drone is lower than it waits: what its height drifts by while its setpoint follows."""
 SOFT_M_S = 0.75
 """Planned contacts sink at 0.5 m/s (docs/landing.md); what the height drifts by comes on top, and 0.15 m/s of luck."""
 
@@ -44,6 +47,23 @@ def test_chase_stays_above_a_roof_whose_height_the_road_below_contradicts(firmwa
     run.run()
     assert score_run(scenario, seed, run.recording).tier in (Tier.S1, Tier.S2, Tier.S3)
     assert Reason.SEEN_TOO_NEAR.name not in {status.reason_code for status in run.recording.statuses}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("firmware", FIRMWARES)
+def test_waiting_drone_stays_above_the_ground_though_its_own_height_wanders(firmware: FirmwareName) -> None:
+    """Nothing is heard of a vehicle, and its own height is up to 3.5 m wrong: it was 1.8 m above the ground."""
+    changes = ["sensors.own_state.height_std_m=2.0", "link.zenoh.loss=1.0"]
+    changes += [f"sensors.range_finder.{key}={value}" for key, value in DATA_SHEET.items()]
+    run = Lockstep(load_changed_scenario(f"static+firmware={firmware}", changes), seed=1)
+    heights_m = []
+    while run.recording.elapsed_s < 60.0:
+        run.step()
+        if run.companion.phase is Phase.WAITING:
+            heights_m.append(run.recording.drone[-1].position_enu_m[2])
+    wait_m = CompanionConfig().takeoff.waiting_height_m
+    assert len(heights_m) > 1000
+    assert min(heights_m) > wait_m - SAGS_M
 
 
 @pytest.mark.slow
