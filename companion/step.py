@@ -17,7 +17,15 @@ from companion.landing.sortie.phases import over_deck
 from companion.landing.state.memory import ModelMemory, StepMemory, to_present_frame
 from companion.landing.state.step_data import StepInputs, StepOutputs, System
 from companion.landing.state.vehicle_update import place_by_deck, predict_pad, update_vehicle
-from companion.landing.steering.virtual_model import NO_RIDE, Ride, tracking_error_max_m, update_ride, update_tracking
+from companion.landing.steering.regain import has_lost, regain
+from companion.landing.steering.virtual_model import (
+    NO_RIDE,
+    Ride,
+    state_then,
+    tracking_error_max_m,
+    update_ride,
+    update_tracking,
+)
 from companion.landing.touchdown.contact_forecast import update_forecast
 from companion.landing.transitions import take_events
 from companion.situation.own_drone import drone_now, lowest_foot, range_carried_m, range_height_m
@@ -86,7 +94,15 @@ def _update_model(memory: StepMemory, inputs: StepInputs, system: System) -> Mod
     follows = memory.progress.phase in LANDING_PHASES | STATION_PHASES
     estimates = follows and system.config.setpoints.corrects_lag
     own_ns = inputs.monotonic_at(own.t_ns)
-    return replace(model, tracking=update_tracking(model.tracking, own_ns, own, inputs.response, estimates=estimates))
+    tracking = update_tracking(model.tracking, own_ns, own, inputs.response, estimates=estimates)
+    model, is_new = replace(model, tracking=tracking), tracking is not model.tracking
+    may_lose = is_new and estimates and inputs.shaping is not None
+    if not may_lose or inputs.response is None or not has_lost(tracking, inputs.response):
+        return model
+    tracking = regain(tracking, inputs.response, inputs.monotonic_ns)
+    if tracking is model.tracking:
+        return model
+    return replace(model, tracking=tracking, plan=None, reference=state_then(tracking, model.reference_ns))
 
 
 def _situation(memory: StepMemory, pad: PadPath | None, inputs: StepInputs, system: System) -> Situation:

@@ -23,6 +23,7 @@ _AIR_MEAN_S = 1.0  # longer than a gust's beginning, shorter than a change of sp
 _HOLDS_MEAN_S = 0.1  # of five reports, shorter than a position controller's swing
 _RIDE_MEAN_S = 0.5  # as the last quarter of a metre takes before it may touch
 _RIDE_MAX_M = 0.15  # a lag of 0.3 s while it sinks at 0.5 m/s: what is more does not last
+_LOST_MEAN_S = 10.0  # long enough for a drone that stands still to be as far from what it was asked for as none gets
 BREAK_S = 0.25  # between two reports, after which the deviation is what the next one shows
 _ACCELERATION_MAX_M_S2 = 10.0  # of the model between two steps: it is set back at times, and that is no motion
 
@@ -32,7 +33,10 @@ class Tracking(Struct, frozen=True, kw_only=True, eq=False):
 
     Attributes:
         past: the model at monotonic times in ns, oldest first, up to where the newest setpoint leads.
-        error_m: from the drone to the model at the time of its newest report.
+        error_m: from the drone to where the model would be at the time of its newest report, had it not been put at
+            the drone lately (`steering.regain`).
+        regained_ns: monotonic time of the report at which it was put there last; None before.
+        lost_enu_m: (2,) by how much it is behind that; what was lost is forgotten within seconds.
         deviation: (4, 2) horizontal state of `ResponseModel` then: from the model to the drone, and what moves it.
         air_enu_m_s2: (2,) horizontal thrust by mass that holds against the air, a mean of the last second.
         holds_enu_m_s2: (2,) likewise what the drone leans beyond what the model accelerates by, of the last tenth: what
@@ -43,6 +47,8 @@ class Tracking(Struct, frozen=True, kw_only=True, eq=False):
 
     past: tuple[tuple[int, ReferenceState], ...] = ()
     error_m: float = 0.0
+    regained_ns: int | None = None
+    lost_enu_m: Array = field(default_factory=lambda: np.zeros(2))
     deviation: Array = field(default_factory=lambda: np.zeros((STATES, 2)))
     air_enu_m_s2: Array = field(default_factory=lambda: np.zeros(2))
     holds_enu_m_s2: Array = field(default_factory=lambda: np.zeros(2))
@@ -102,9 +108,11 @@ def update_tracking(
     behind = position - np.array(own.position_enu_m)
     since_s = math.inf if before_ns is None else (own_ns - before_ns) * 1e-9
     air_enu_m_s2, holds_enu_m_s2 = _update_leans(tracking, own, own_ns, since_s, response)
+    lost_enu_m = tracking.lost_enu_m * math.exp(-since_s / _LOST_MEAN_S)
     tracking = replace(
         tracking,
-        error_m=math.hypot(*behind.tolist()),
+        error_m=math.hypot(*(behind + np.append(lost_enu_m, 0.0)).tolist()),
+        lost_enu_m=lost_enu_m,
         compared_ns=own_ns,
         air_enu_m_s2=air_enu_m_s2,
         holds_enu_m_s2=holds_enu_m_s2,

@@ -1,0 +1,67 @@
+"""Where the virtual model goes on when the drone has lost it: at the drone; pure numerics.
+
+An autopilot that makes a path of its own of the setpoints (ArduPilot) follows none whose acceleration changes faster
+than its jerk. What its path is late by, for setpoints that were lost, it makes up for late, and overdoes. The response
+is then not that of `autopilots.response`, and a model that leads the drone by it swings: about a car at a steady 7 m/s
+by 3 m. From the drone's own motion on, a plan within the limits is one that the path follows.
+"""
+
+import math
+
+import numpy as np
+
+from companion.autopilots.response import STATES, ResponseModel
+from companion.core.data import Array
+from companion.landing.steering.virtual_model import BREAK_S, Tracking, state_then
+from companion.planning.guidance import ReferenceState
+from link.records import replace
+
+_LOST_CHI2 = 13.8  # of place and velocity: what gusts alone make in one report of a thousand
+_STEP_S = 0.02  # between two states of the past, between which it is straight
+
+
+def has_lost(tracking: Tracking, response: ResponseModel) -> bool:
+    """Return whether the drone deviates from the model along an axis by more than gusts make it."""
+    deviation = tracking.deviation[:2]
+    chi2 = np.sum(deviation * np.linalg.solve(response.spread[:2, :2], deviation), axis=0)
+    return float(np.max(chi2)) > _LOST_CHI2
+
+
+def regain(tracking: Tracking, response: ResponseModel, monotonic_ns: int) -> Tracking:
+    """Return the tracking with the model at the drone since its newest report; heights stay the model's.
+
+    From that report on the drone goes on as it accelerated then, as far as its lean shows. The result is as given where
+    the report is so old that nothing tells how the drone has flown since.
+
+    Args:
+        tracking: with the model up to where the newest setpoint leads.
+        response: of the autopilot.
+        monotonic_ns: now.
+    """
+    since_ns = tracking.compared_ns
+    if since_ns is None or (monotonic_ns - since_ns) * 1e-9 > BREAK_S:
+        return tracking
+    then = state_then(tracking, since_ns)
+    motion = np.array([then.position_enu_m, then.velocity_enu_m_s, then.acceleration_enu_m_s2])[:, :2]
+    motion[:2] += tracking.deviation[:2]
+    motion[2] += tracking.holds_enu_m_s2 - tracking.air_enu_m_s2
+    until_ns = max(tracking.past[-1][0], since_ns + round(_STEP_S * 1e9))
+    count = max(math.ceil((until_ns - since_ns) * 1e-9 / _STEP_S), 1)
+    times_ns = [since_ns + (until_ns - since_ns) * index // count for index in range(count + 1)]
+    past = tuple((t_ns, _at_drone(state_then(tracking, t_ns), motion, (t_ns - since_ns) * 1e-9)) for t_ns in times_ns)
+    deviation = np.zeros((STATES, 2))
+    if not response.cascade.is_led:
+        deviation[2] = motion[2]
+    lost_enu_m = tracking.lost_enu_m - tracking.deviation[0]
+    return replace(tracking, past=past, deviation=deviation, lost_enu_m=lost_enu_m, regained_ns=since_ns)
+
+
+def _at_drone(state: ReferenceState, motion: Array, after_s: float) -> ReferenceState:
+    """Return the model with the drone's horizontal motion (3, 2), carried on for `after_s`."""
+    place, velocity, acceleration = motion
+    carried = (place + (velocity + 0.5 * acceleration * after_s) * after_s, velocity + acceleration * after_s)
+    return ReferenceState(
+        position_enu_m=np.append(carried[0], state.position_enu_m[2]),
+        velocity_enu_m_s=np.append(carried[1], state.velocity_enu_m_s[2]),
+        acceleration_enu_m_s2=np.append(acceleration, state.acceleration_enu_m_s2[2]),
+    )
