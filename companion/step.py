@@ -17,7 +17,7 @@ from companion.landing.sortie.phases import over_deck
 from companion.landing.state.memory import ModelMemory, StepMemory, to_present_frame
 from companion.landing.state.step_data import StepInputs, StepOutputs, System
 from companion.landing.state.vehicle_update import place_by_deck, predict_pad, update_vehicle
-from companion.landing.steering.regain import has_lost, regain
+from companion.landing.steering.regain import regain
 from companion.landing.steering.virtual_model import (
     NO_RIDE,
     Ride,
@@ -87,7 +87,7 @@ def _learn_from_deck(
 
 
 def _update_model(memory: StepMemory, inputs: StepInputs, system: System) -> ModelMemory:
-    """Compare the virtual model with where the drone says that it was."""
+    """Compare the virtual model with where the drone says that it was, and put it there once its path has left it."""
     model, own = memory.model, inputs.own
     if own is None or model.reference is None:
         return model
@@ -95,14 +95,14 @@ def _update_model(memory: StepMemory, inputs: StepInputs, system: System) -> Mod
     estimates = follows and system.config.setpoints.corrects_lag
     own_ns = inputs.monotonic_at(own.t_ns)
     tracking = update_tracking(model.tracking, own_ns, own, inputs.response, estimates=estimates)
-    model, is_new = replace(model, tracking=tracking), tracking is not model.tracking
-    may_lose = is_new and estimates and inputs.shaping is not None
-    if not may_lose or inputs.response is None or not has_lost(tracking, inputs.response):
+    is_new, makes_path = tracking is not model.tracking, inputs.shaping is not None
+    model = replace(model, tracking=tracking)
+    if not (is_new and estimates and makes_path) or inputs.response is None:
         return model
-    tracking = regain(tracking, inputs.response, inputs.monotonic_ns)
-    if tracking is model.tracking:
+    regained = regain(tracking, inputs.response, inputs.monotonic_ns)
+    if regained is tracking:
         return model
-    return replace(model, tracking=tracking, plan=None, reference=state_then(tracking, model.reference_ns))
+    return replace(model, tracking=regained, plan=None, reference=state_then(regained, model.reference_ns))
 
 
 def _situation(memory: StepMemory, pad: PadPath | None, inputs: StepInputs, system: System) -> Situation:

@@ -28,10 +28,10 @@ def has_lost(tracking: Tracking, response: ResponseModel) -> bool:
 
 
 def regain(tracking: Tracking, response: ResponseModel, monotonic_ns: int) -> Tracking:
-    """Return the tracking with the model at the drone since its newest report; heights stay the model's.
+    """Return the tracking with the model at a drone that has lost it, since its newest report; heights stay.
 
     From that report on the drone goes on as it accelerated then, as far as its lean shows. The result is as given where
-    the report is so old that nothing tells how the drone has flown since.
+    nothing is lost, and where the report is so old that nothing tells how the drone has flown since.
 
     Args:
         tracking: with the model up to where the newest setpoint leads.
@@ -39,7 +39,8 @@ def regain(tracking: Tracking, response: ResponseModel, monotonic_ns: int) -> Tr
         monotonic_ns: now.
     """
     since_ns = tracking.compared_ns
-    if since_ns is None or (monotonic_ns - since_ns) * 1e-9 > BREAK_S:
+    is_old = since_ns is None or (monotonic_ns - since_ns) * 1e-9 > BREAK_S
+    if since_ns is None or is_old or not has_lost(tracking, response):
         return tracking
     then = state_then(tracking, since_ns)
     motion = np.array([then.position_enu_m, then.velocity_enu_m_s, then.acceleration_enu_m_s2])[:, :2]
