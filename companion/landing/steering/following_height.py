@@ -91,12 +91,13 @@ def rise_from_ground_m(waiting_enu_m: float, s: Situation, dt_s: float, config: 
     """Return by how much the waiting point rises in `dt_s`, so as to be as high over what the range finder sees.
 
     The drone's own height wanders by metres while it waits (a barometer), and nothing else sees the ground come nearer.
-    It does not come down again: what is below may have been a roof that drove on.
+    It does not come down again: what is below may have been a roof that drove on. No range finder that something hangs
+    before makes it climb to more than twice the height at which it waits.
     """
-    seen_m = s.below.range_height_m
+    seen_m, wait_m = s.below.range_height_m, config.takeoff.waiting_height_m
     if s.drone is None or seen_m is None:
         return 0.0
-    wanted_enu_m = float(s.drone.position_enu_m[2]) - seen_m + config.takeoff.waiting_height_m
+    wanted_enu_m = min(float(s.drone.position_enu_m[2]) - seen_m + wait_m, _feet_on_ground_m(s) + 2.0 * wait_m)
     return min(max(wanted_enu_m - waiting_enu_m, 0.0), _RISES_M_S * dt_s)
 
 
@@ -111,6 +112,11 @@ def too_low_m(height_enu_m: float, s: Situation, config: CompanionConfig) -> flo
 
     Where no range finder has told the ground, it is taken to be where the autopilot's local frame began.
     """
-    wait_m, ground = config.takeoff.waiting_height_m, s.below.ground_enu_m
-    ground_m = 0.0 if ground is None else float(ground[2])
-    return min(max(ground_m + s.feet_offset_m + wait_m - height_enu_m, 0.0), wait_m)
+    wait_m = config.takeoff.waiting_height_m
+    return min(max(_feet_on_ground_m(s) + wait_m - height_enu_m, 0.0), wait_m)
+
+
+def _feet_on_ground_m(s: Situation) -> float:
+    """Return the height in W of a drone that stands on the ground."""
+    ground = s.below.ground_enu_m
+    return s.feet_offset_m + (0.0 if ground is None else float(ground[2]))

@@ -48,5 +48,14 @@ def test_single_reading_raises_it_by_centimetres() -> None:
     assert 0.0 < rise_from_ground_m(7.0, _waits(0.2), dt_s, CONFIG) < FASTEST_M_S * dt_s
 
 
+def test_drone_whose_range_finder_sees_something_everywhere_climbs_to_twice_the_height() -> None:
+    waits_m, dt_s = WAIT_M, 1.0 / CONFIG.setpoints.rate_hz
+    for _ in range(round(LONG_S / dt_s)):
+        waits_m += rise_from_ground_m(waits_m, _waits(1.0, up_m=waits_m), dt_s, CONFIG)
+    facts = _waits(1.0)
+    assert facts.below.ground_enu_m is None
+    assert waits_m == pytest.approx(facts.feet_offset_m + 2.0 * WAIT_M)
+
+
 def test_waiting_point_stays_where_the_drone_is_not_known() -> None:
     assert rise_from_ground_m(7.0, replace(_waits(1.0), drone=None), LONG_S, CONFIG) == 0.0
