@@ -21,6 +21,7 @@ from companion.landing.steering.regain import regain
 from companion.landing.steering.virtual_model import (
     NO_RIDE,
     Ride,
+    lost_for_s,
     state_then,
     tracking_error_max_m,
     update_ride,
@@ -138,6 +139,7 @@ def _situation(memory: StepMemory, pad: PadPath | None, inputs: StepInputs, syst
         following=Following(
             reference=memory.model.reference,
             error_m=memory.model.tracking.error_m,
+            lost_for_s=lost_for_s(memory.model.tracking, inputs.monotonic_ns),
             error_max_m=tracking_error_max_m(
                 memory.model.reference, inputs.response, inputs.link_delay.std_s, system.config.abort.tracking_stds_max
             ),

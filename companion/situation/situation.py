@@ -99,6 +99,7 @@ class Following(Struct, frozen=True, kw_only=True):
     Attributes:
         error_m: its distance from where it was asked to be at that time.
         error_max_m: of one that follows them as its autopilot does in gusts over this link.
+        lost_for_s: for how long it has lost them again and again, though they began where it was.
         reference: the virtual model that they follow.
         late_s: after which most have come: the link's mean delay and its standard deviation.
         rides_m: the lowest foot above that of a level drone on the virtual model, when it could touch nothing.
@@ -106,6 +107,7 @@ class Following(Struct, frozen=True, kw_only=True):
 
     error_m: float
     error_max_m: float
+    lost_for_s: float = 0.0
     reference: ReferenceState | None = None
     late_s: float = 0.0
     rides_m: float = 0.0

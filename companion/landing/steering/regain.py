@@ -12,7 +12,7 @@ import numpy as np
 
 from companion.autopilots.response import STATES, ResponseModel
 from companion.core.data import Array
-from companion.landing.steering.virtual_model import BREAK_S, Tracking, state_then
+from companion.landing.steering.virtual_model import BREAK_S, Tracking, lost_for_s, state_then
 from companion.planning.guidance import ReferenceState
 from link.records import replace
 
@@ -53,8 +53,9 @@ def regain(tracking: Tracking, response: ResponseModel, monotonic_ns: int) -> Tr
     deviation = np.zeros((STATES, 2))
     if not response.cascade.is_led:
         deviation[2] = motion[2]
-    lost_enu_m = tracking.lost_enu_m - tracking.deviation[0]
-    return replace(tracking, past=past, deviation=deviation, lost_enu_m=lost_enu_m, regained_ns=since_ns)
+    is_again = lost_for_s(tracking, since_ns) > 0.0
+    lost_since_ns = tracking.lost_since_ns if is_again else since_ns
+    return replace(tracking, past=past, deviation=deviation, regained_ns=since_ns, lost_since_ns=lost_since_ns)
 
 
 def _at_drone(state: ReferenceState, motion: Array, after_s: float) -> ReferenceState:

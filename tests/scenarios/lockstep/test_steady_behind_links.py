@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from companion.core.data import Array
+from companion.core.reasons import Reason
 from companion.situation.phases import Phase
 from scenarios.catalogue.catalogue import load_changed_scenario, load_scenario
 from scenarios.config import FIRMWARES, FirmwareName, Scenario
@@ -16,6 +17,7 @@ SETTLED_S, WATCHED_S = 1.0, 10.0
 GOOD = ("link.mavlink.delay_s=0.02",)
 DEGRADED = "+sensors=degraded+wind=nominal+link=degraded"
 SWINGS_S, SWINGS_LESS_M = 15.0, 2.0
+NOTICED_S = 6.0
 BAD = ("link.mavlink.delay_s=0.1", "link.mavlink.jitter_s=0.05", "link.mavlink.loss=0.2")
 
 
@@ -65,3 +67,21 @@ def test_drone_that_its_path_has_left_is_over_the_car_again_without_swinging(tra
             largest_m = max(largest_m, math.hypot(car[0] - drone[0], car[1] - drone[1]))
     assert begun_s is not None
     assert largest_m < SWINGS_LESS_M
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("firmware", FIRMWARES)
+def test_drone_that_no_setpoint_reaches_any_more_is_noticed(
+    firmware: FirmwareName, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """ArduPilot stops and stays in its mode, and each plan goes on from there: it is never far from its setpoint."""
+    run = Lockstep(
+        load_changed_scenario(f"straight_10+firmware={firmware}", ["system.companion.abort.retries_max=0"]), 1
+    )
+    while run.companion.phase is not Phase.CHASE:
+        run.step()
+    monkeypatch.setattr(run, "_send", lambda _frames, _t_ns: None)
+    lost_s = run.recording.elapsed_s
+    while run.companion.phase is Phase.CHASE and run.recording.elapsed_s < lost_s + NOTICED_S:
+        run.step()
+    assert run.companion.memory.progress.cause.reason is Reason.SETPOINT_NOT_FOLLOWED
