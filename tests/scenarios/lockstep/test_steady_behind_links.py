@@ -7,7 +7,7 @@ import pytest
 
 from companion.core.data import Array
 from companion.core.reasons import Reason
-from companion.situation.phases import Phase
+from companion.situation.phases import LANDING_PHASES, Phase
 from scenarios.catalogue.catalogue import load_changed_scenario, load_scenario
 from scenarios.config import FIRMWARES, FirmwareName, Scenario
 from scenarios.lockstep.lockstep import Lockstep
@@ -82,6 +82,6 @@ def test_drone_that_no_setpoint_reaches_any_more_is_noticed(
         run.step()
     monkeypatch.setattr(run, "_send", lambda _frames, _t_ns: None)
     lost_s = run.recording.elapsed_s
-    while run.companion.phase is Phase.CHASE and run.recording.elapsed_s < lost_s + NOTICED_S:
+    while run.companion.phase in LANDING_PHASES and run.recording.elapsed_s < lost_s + NOTICED_S:
         run.step()
     assert run.companion.memory.progress.cause.reason is Reason.SETPOINT_NOT_FOLLOWED
