@@ -138,6 +138,7 @@ class ResponseModel:
         report = np.diag([POSITION_STD_M**2, VELOCITY_STD_M_S**2]) * REPORT_PERIOD_S
         self.covariance: Array = solve_continuous_are(self._motion.T, seen.T, noise, report)
         self.spread: Array = solve_continuous_lyapunov(self._motion, -noise)
+        self._told: Array = np.asarray(np.linalg.inv(self.spread[:2, :2]), dtype=np.float64)
         self._gain = self.covariance @ seen.T @ np.linalg.inv(report)
         self._corrected = self._motion - self._gain @ seen
         self._free, self._forced = _responses(self._motion, self._asked, offset_s)
@@ -153,6 +154,11 @@ class ResponseModel:
         """
         driven = self._gain @ measured + np.outer(self._asked, acceleration_m_s2)
         return _move(self._corrected, state, driven, dt_s)
+
+    def chi2(self, state: Array) -> Array:
+        """Return how unlikely place and velocity of a state (4, k) are of a drone that follows in gusts, (k,)."""
+        deviation = state[:2]
+        return np.asarray(np.sum(deviation * (self._told @ deviation), axis=0))
 
     def carry(self, state: Array, dt_s: float) -> Array:
         """Return the state (4, k) a moment later on a steady path, without a report."""

@@ -101,6 +101,11 @@ def update_gusts(gusts: Gusts, reported_ns: int, deviation: Array, path_m_s2: Ar
     )
 
 
+def forget_push(gusts: Gusts) -> Gusts:
+    """Return the gusts where the push before is unknown, so that the next one differs from nothing."""
+    return replace(gusts, expected_m_s2=None)
+
+
 def _doubt_m2_s4(changed_m_s2: Array) -> Array:
     """Return the variance (2,) of a push that is none, while the path's acceleration changes by so much."""
     return np.square(ATTITUDE_LAG_S * changed_m_s2 / _SETTLES_S)

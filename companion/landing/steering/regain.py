@@ -11,7 +11,7 @@ import math
 import numpy as np
 
 from companion.autopilots.response import STATES, ResponseModel
-from companion.core.data import Array
+from companion.landing.steering.flown_plan import extrapolate
 from companion.landing.steering.virtual_model import BREAK_S, Tracking, lost_for_s, state_then
 from companion.planning.guidance import ReferenceState
 from link.records import replace
@@ -22,9 +22,7 @@ _STEP_S = 0.02  # between two states of the past, between which it is straight
 
 def has_lost(tracking: Tracking, response: ResponseModel) -> bool:
     """Return whether the drone deviates from the model along an axis by more than gusts make it."""
-    deviation = tracking.deviation[:2]
-    chi2 = np.sum(deviation * np.linalg.solve(response.spread[:2, :2], deviation), axis=0)
-    return float(np.max(chi2)) > _LOST_CHI2
+    return float(np.max(response.chi2(tracking.deviation))) > _LOST_CHI2
 
 
 def regain(tracking: Tracking, response: ResponseModel, monotonic_ns: int) -> Tracking:
@@ -42,28 +40,36 @@ def regain(tracking: Tracking, response: ResponseModel, monotonic_ns: int) -> Tr
     is_old = since_ns is None or (monotonic_ns - since_ns) * 1e-9 > BREAK_S
     if since_ns is None or is_old or not has_lost(tracking, response):
         return tracking
-    then = state_then(tracking, since_ns)
-    motion = np.array([then.position_enu_m, then.velocity_enu_m_s, then.acceleration_enu_m_s2])[:, :2]
-    motion[:2] += tracking.deviation[:2]
-    motion[2] += tracking.holds_enu_m_s2 - tracking.air_enu_m_s2
+    drone = _drone(tracking, since_ns)
     until_ns = max(tracking.past[-1][0], since_ns + round(_STEP_S * 1e9))
-    count = max(math.ceil((until_ns - since_ns) * 1e-9 / _STEP_S), 1)
+    count = math.ceil((until_ns - since_ns) * 1e-9 / _STEP_S)
     times_ns = [since_ns + (until_ns - since_ns) * index // count for index in range(count + 1)]
-    past = tuple((t_ns, _at_drone(state_then(tracking, t_ns), motion, (t_ns - since_ns) * 1e-9)) for t_ns in times_ns)
+    past = tuple(
+        (t_ns, _moved_as(state_then(tracking, t_ns), extrapolate(drone, (t_ns - since_ns) * 1e-9))) for t_ns in times_ns
+    )
     deviation = np.zeros((STATES, 2))
     if not response.cascade.is_led:
-        deviation[2] = motion[2]
+        deviation[2] = drone.acceleration_enu_m_s2[:2]
     is_again = lost_for_s(tracking, since_ns) > 0.0
     lost_since_ns = tracking.lost_since_ns if is_again else since_ns
     return replace(tracking, past=past, deviation=deviation, regained_ns=since_ns, lost_since_ns=lost_since_ns)
 
 
-def _at_drone(state: ReferenceState, motion: Array, after_s: float) -> ReferenceState:
-    """Return the model with the drone's horizontal motion (3, 2), carried on for `after_s`."""
-    place, velocity, acceleration = motion
-    carried = (place + (velocity + 0.5 * acceleration * after_s) * after_s, velocity + acceleration * after_s)
+def _drone(tracking: Tracking, t_ns: int) -> ReferenceState:
+    """Return how the drone moves at its newest report, at `t_ns`, at the model's height."""
+    model, (place, velocity, *_) = state_then(tracking, t_ns), tracking.deviation
+    leans = tracking.holds_enu_m_s2 - tracking.air_enu_m_s2
     return ReferenceState(
-        position_enu_m=np.append(carried[0], state.position_enu_m[2]),
-        velocity_enu_m_s=np.append(carried[1], state.velocity_enu_m_s[2]),
-        acceleration_enu_m_s2=np.append(acceleration, state.acceleration_enu_m_s2[2]),
+        position_enu_m=model.position_enu_m + np.append(place, 0.0),
+        velocity_enu_m_s=model.velocity_enu_m_s + np.append(velocity, 0.0),
+        acceleration_enu_m_s2=model.acceleration_enu_m_s2 + np.append(leans, 0.0),
+    )
+
+
+def _moved_as(model: ReferenceState, drone: ReferenceState) -> ReferenceState:
+    """Return the model with the drone's horizontal motion."""
+    return ReferenceState(
+        position_enu_m=np.append(drone.position_enu_m[:2], model.position_enu_m[2]),
+        velocity_enu_m_s=np.append(drone.velocity_enu_m_s[:2], model.velocity_enu_m_s[2]),
+        acceleration_enu_m_s2=np.append(drone.acceleration_enu_m_s2[:2], model.acceleration_enu_m_s2[2]),
     )

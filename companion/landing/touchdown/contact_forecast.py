@@ -9,7 +9,7 @@ from companion.forecast.branches import make_events
 from companion.forecast.chances import sum_up
 from companion.forecast.draws import draws
 from companion.forecast.drivers import update_drivers
-from companion.forecast.gusts import Gusts, update_gusts
+from companion.forecast.gusts import Gusts, forget_push, update_gusts
 from companion.forecast.rollout import roll_out
 from companion.forecast.samples import Descent, Samples
 from companion.landing.decisions.waiting import is_moment_quiet
@@ -84,8 +84,8 @@ def _gusts(memory: StepMemory, inputs: StepInputs) -> Gusts:
     flies_evenly = memory.progress.phase in (Phase.ALIGN, Phase.DESCEND) and bool(tracking.deviation.any())
     if not flies_evenly or tracking.compared_ns is None or inputs.response is None or reference is None:
         return gusts
-    if tracking.regained_ns == tracking.compared_ns:  # what pushed the drone before is unknown
-        gusts = replace(gusts, expected_m_s2=None)
+    if tracking.regained_ns == tracking.compared_ns:  # from here on the push is estimated anew
+        gusts = forget_push(gusts)
     path_m_s2 = reference.acceleration_enu_m_s2[:2]
     return update_gusts(gusts, tracking.compared_ns, tracking.deviation, path_m_s2, inputs.response)
 

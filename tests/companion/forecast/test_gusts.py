@@ -15,7 +15,7 @@ from companion.autopilots.response import (
     ResponseModel,
 )
 from companion.core.data import Array
-from companion.forecast.gusts import Gusts, update_gusts
+from companion.forecast.gusts import Gusts, forget_push, update_gusts
 
 RESPONSE = ResponseModel(
     Cascade(position_per_s=0.95, velocity_per_s=1.8, integral_per_s2=0.4, lead_s=0.02), np.arange(0.0, 4.01, 0.2)
@@ -52,6 +52,15 @@ def pushed(std_m_s2: float, noise: float, seed: int) -> Gusts:
 def test_gusts_are_learnt_from_what_pushes_whatever_the_reports_noise(std_m_s2: float, noise: float) -> None:
     found = np.mean([pushed(std_m_s2, noise, seed).push_std_m_s2 ** 2 for seed in range(4)]) ** 0.5
     assert found == pytest.approx(std_m_s2, rel=0.25, abs=0.12)
+
+
+def test_push_that_is_estimated_anew_is_no_gust() -> None:
+    before, nothing = learnt(np.full((75, 2), 5.0)), np.zeros((4, 2))
+    gusts, anew = before, forget_push(before)
+    for report in range(75, 200):
+        t_ns = round(report * REPORT_S * 1e9)
+        gusts, anew = (update_gusts(one, t_ns, nothing, np.zeros(2), RESPONSE) for one in (gusts, anew))
+    assert gusts.push_std_m_s2 > before.push_std_m_s2 > anew.push_std_m_s2
 
 
 def test_reports_without_noise_of_a_drone_that_nothing_pushes_show_no_gusts() -> None:

@@ -9,12 +9,12 @@ from hypothesis import strategies as st
 
 from companion.autopilots.response import ATTITUDE_LAG_S
 from companion.core.reasons import Cause, Reason
-from companion.landing.decisions.aborts import ABORTS, is_out_of_range, must_wait
+from companion.landing.decisions.aborts import ABORTS, is_not_followed, is_out_of_range, must_wait
 from companion.landing.decisions.conditions import Condition, cause_of
 from companion.landing.decisions.entries import update_held
 from companion.landing.state.memory import Held
 from companion.situation.phases import LANDING_PHASES, Event, Phase
-from companion.situation.situation import Situation
+from companion.situation.situation import Following, Situation
 from companion.vehicle.pad_reach import cone_radius_m
 from link.messages import Vector3
 from link.records import replace
@@ -177,3 +177,11 @@ def test_a_committed_descent_turns_back_from_a_risky_contact_while_it_can(facts:
 )
 def test_descent_waits_for_what_passes(drifting: Situation, wanted: bool) -> None:
     assert must_wait(drifting, CONFIG) is wanted
+
+
+@pytest.mark.parametrize(("lost_for_s", "not_followed"), [(0.0, False), (1.9, False), (2.1, True)])
+def test_drone_that_is_near_setpoints_that_begin_where_it_is_may_not_follow_them(
+    lost_for_s: float, not_followed: bool
+) -> None:
+    facts = replace(situation(), following=Following(error_m=0.1, error_max_m=1.0, lost_for_s=lost_for_s))
+    assert is_not_followed(facts, CONFIG) is not_followed
