@@ -13,7 +13,7 @@ from msgspec import Struct
 
 from companion.config.companion import CompanionConfig
 from companion.core.data import GRAVITY_M_S2, Array, FlightLimits
-from companion.forecast.rollout import lean_change
+from companion.forecast.steering import lean_change
 from companion.landing.state.memory import StepMemory
 from companion.landing.state.step_data import StepInputs
 from companion.landing.steering.flown_plan import FlownPlan

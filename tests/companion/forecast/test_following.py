@@ -6,7 +6,7 @@ import pytest
 from companion.autopilots.response import STATES, Cascade, ResponseModel
 from companion.config.planning import MpcConfig
 from companion.core.data import GRAVITY_M_S2, Array, FlightLimits
-from companion.forecast import rollout
+from companion.forecast import steering
 from companion.forecast.samples import DT_S, Follower
 from companion.landing.steering.targets import HORIZON_OFFSETS_S
 from companion.landing.steering.virtual_model import response_to
@@ -85,9 +85,9 @@ def rolled_out(model: Array, deviation: Array, drone: Follower, lasts_s: float =
     for _ in range(round(lasts_s / DT_S)):
         off, before = path[:2] + state[:2], path[2].copy()
         found.append(off[:, 0])
-        jerk = rollout.steer(path, state, off, known, drone)
-        rollout.plan(path, jerk, still, still, (drone.jerk_max_m_s3, drone.acceleration_max_m_s2, GRAVITY_M_S2))
-        rollout.follow(state, before, path[2], still, drone)
+        jerk = steering.steer(path, state, off, known, drone)
+        steering.plan(path, jerk, still, still, (drone.jerk_max_m_s3, drone.acceleration_max_m_s2, GRAVITY_M_S2))
+        steering.follow(state, before, path[2], still, drone)
     return np.array(found)
 
 

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from companion.core.data import GRAVITY_M_S2
-from companion.forecast import rollout
+from companion.forecast import body, rollout, steering
+from companion.forecast import samples as samples_of
 from companion.forecast.knowledge import relearn
 from companion.forecast.rollout import roll_out
 from companion.forecast.samples import ALONG, ASIDE, CONTACT, DT_S, ERROR, IN_S, SINK, SPEED, TILT
@@ -38,6 +39,16 @@ def test_the_later_a_brake_is_known_the_faster_is_the_contact() -> None:
     ]
     first, second, third = (end[SPEED] for end in speeds_m_s)
     assert first < second < third
+
+
+def test_a_brake_that_has_just_come_to_be_known_is_answered_once_a_setpoint_takes_effect() -> None:
+    known = descent(0.15, level_below_m=-1.0)
+    known.course.along_m_s2[:] = -3.0
+    known.course.model[2] = [1.8, 2.4]  # the model does not brake yet
+    later_s = 3.0 * DT_S
+    ends = [roll_out(samples()._replace(ahead_s=np.array([s])), known, 0.1)[0] for s in (0.0, later_s)]
+    assert all(end[CONTACT] == 1.0 for end in ends)
+    assert 0.5 < (ends[1][SPEED] - ends[0][SPEED]) / (3.0 * later_s) < 1.0  # some of it is made up for
 
 
 BEND_ENDS = np.array([0.1, 2.5, 1.2, NEVER_S])
@@ -167,25 +178,13 @@ def test_machine_code_is_its_python(monkeypatch: pytest.MonkeyPatch) -> None:
         vehicle=0.1 * generator.standard_normal(several.vehicle.shape),
         deviation=0.1 * generator.standard_normal(several.deviation.shape),
         pushes=generator.standard_normal(several.pushes.shape),
+        gains_rad_s2_m=generator.uniform(0.0, 0.01, several.gains_rad_s2_m.shape),
     )
     uneven = descent(push_std_m_s2=0.5, relearns_hz=3.0, error_std_m_s=0.1)
     compiled = roll_out(several, uneven, 0.17)
-    for name in (
-        "drive",
-        "relearn",
-        "believe",
-        "know",
-        "_waits",
-        "_breaks_off",
-        "steer",
-        "plan",
-        "follow",
-        "_contact_at",
-        "_levels",
-        "lean_change",
-        "_touch",
-        "_fly",
-    ):
-        monkeypatch.setattr(rollout, name, getattr(rollout, name).py_func)
+    for module in (rollout, steering, samples_of, body):
+        for name, kernel in vars(module).items():
+            if hasattr(kernel, "py_func") and name != "roll_out":
+                monkeypatch.setattr(module, name, kernel.py_func)
     plain = roll_out.py_func(several, uneven, 0.17)
     assert compiled == pytest.approx(plain, abs=1e-12)
