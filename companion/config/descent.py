@@ -61,8 +61,8 @@ class RiskConfig(StrictModel):
     # A contact is begun with at most so much. Published landings on decks in waves are asked to be good in 95 %
     # (docs/benchmark.md). What is riskier waits: for a quieter moment of a deck, for another one of a driver.
     begins_max: Annotated[float, Field(gt=0.0, le=1.0)] = 0.05
-    # With more than so much the descent turns back as long as it can stop sinking above the pad: an unsafe contact
-    # weighs as much as five more approaches.
+    # With more than so much the descent turns back until the drone stands: an unsafe contact weighs as much as five
+    # more approaches.
     turns_back_min: Annotated[float, Field(gt=0.0, le=1.0)] = 0.2
     # For which it waits without its time limit running: as long as what was seen of a driver is kept.
     wait_max_s: NotNegative = 60.0

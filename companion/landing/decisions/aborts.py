@@ -2,7 +2,6 @@
 
 import math
 
-from companion.autopilots.response import ATTITUDE_LAG_S
 from companion.config.companion import CompanionConfig
 from companion.config.planning import LandingStyle
 from companion.core.data import GRAVITY_M_S2
@@ -103,30 +102,21 @@ def strays(s: Situation, c: CompanionConfig) -> bool:
     return a is not None and (_is_beside_cone(a, c) or a.speed_m_s > c.abort.near_speed_max_m_s)
 
 
-def _can_turn_back(s: Situation, c: CompanionConfig) -> bool:
-    """Return whether a drone that breaks off now stops sinking above the pad: after its lag and with what it climbs.
-
-    One that is lower than its height errs and does not sink may stand already.
-    """
-    if s.approach is None or s.limits is None:
-        return False
-    sinks_m_s = max(-s.approach.climb_m_s, 0.0)
-    if s.approach.height_m < c.descent.sway.height_min_m and sinks_m_s < c.touchdown.blocked_speed_m_s:
-        return False
-    lag_s = ATTITUDE_LAG_S + s.following.late_s
-    stops_m = sinks_m_s * lag_s + 0.5 * sinks_m_s**2 / s.limits.vertical_acceleration_max_m_s2
-    return s.approach.height_m > stops_m
+def _may_stand(a: Approach, c: CompanionConfig) -> bool:
+    """Return whether a drone is lower than its height errs and does not sink."""
+    return a.height_m < c.descent.sway.height_min_m and -a.climb_m_s < c.touchdown.blocked_speed_m_s
 
 
 def _is_contact_risky(s: Situation, c: CompanionConfig) -> bool:
     """Return whether a descent that is committed had better turn back; one that is not waits.
 
-    It turns back, too, where it most likely would a moment later, nearer to a pad that is leaving it.
+    It turns back, too, where it most likely would a moment later, nearer to a pad that is leaving it. One that may be
+    too low for that tries: a pad that it touches as it does, it would touch anyway, sooner and harder.
     """
     if s.contact is None or s.approach is None or s.approach.height_m > c.descent.commit_height_m:
         return False
     is_risky = s.contact.unsafe > c.descent.risk.turns_back_min or s.contact.broken_off > _MOSTLY
-    return is_risky and _can_turn_back(s, c)
+    return is_risky and not _may_stand(s.approach, c)
 
 
 def _tell_risk(s: Situation, _: CompanionConfig) -> Cause:
@@ -169,7 +159,7 @@ def outruns(s: Situation, c: CompanionConfig) -> bool:
 
 
 CONTACT_RISKY = Condition(reason=Reason.CONTACT_RISKY, phases=_DESCENT, is_true=_is_contact_risky, cause=_tell_risk)
-"""Ends a commitment to land as well, as long as the drone can turn back."""
+"""Ends a commitment to land as well, as long as the drone does not stand."""
 
 ABORTS = (
     VEHICLE_SILENT,

@@ -7,7 +7,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from companion.autopilots.response import ATTITUDE_LAG_S
 from companion.core.reasons import Cause, Reason
 from companion.landing.decisions.aborts import ABORTS, is_not_followed, is_out_of_range, must_wait
 from companion.landing.decisions.conditions import Condition, cause_of
@@ -32,7 +31,7 @@ from tests.companion.facts import (
     reference_at,
     situation,
 )
-from tests.companion.landing.decisions.unsafe_facts import HALF_M, HIGH_M, LIMITS, LOW_M, UNSAFE, risky
+from tests.companion.landing.decisions.unsafe_facts import HALF_M, HIGH_M, LOW_M, UNSAFE, risky
 from tests.companion.world import LANDING
 
 BLIND = (Reason.OWN_POSITION_OLD, Reason.HEADING_UNKNOWN, Reason.BELOW_PAD, Reason.NOTHING_TOUCHED, Reason.ROAD_BELOW)
@@ -136,8 +135,6 @@ def test_below_the_commit_height_it_does_not_land_where_nobody_knows_the_pad_to_
     assert decision == (Event.UNSAFE, Cause(reason))
 
 
-LAG_M = 0.45 * ATTITUDE_LAG_S
-STOPPING_M = LAG_M + 0.5 * 0.45**2 / LIMITS.vertical_acceleration_max_m_s2
 MOST = CONFIG.descent.risk.turns_back_min
 
 
@@ -150,15 +147,12 @@ MOST = CONFIG.descent.risk.turns_back_min
         (risky(LOW_M, 0.45, unsafe=0.0, broken_off=0.45), False),
         (risky(LOW_M, 0.45, unsafe=0.0, broken_off=0.55), True),
         (risky(CONFIG.descent.commit_height_m + 0.01, 0.45), False),  # it may wait
-        (risky(STOPPING_M + 0.01, 0.45), True),
-        (risky(STOPPING_M - 0.01, 0.45), False),
+        (risky(0.02, 0.45), True),  # what it touches as it tries, it would touch anyway
         (risky(CONFIG.descent.sway.height_min_m - 0.01, 0.1), False),  # it may stand already
-        (risky(0.2, 1.0), False),
-        (risky(0.3, 1.0), True),
-        (changed(risky(0.3, 1.0), late_s=0.1), False),  # the command would come too late
+        (risky(CONFIG.descent.sway.height_min_m + 0.01, 0.1), True),
     ],
 )
-def test_a_committed_descent_turns_back_from_a_risky_contact_while_it_can(facts: Situation, turns_back: bool) -> None:
+def test_a_committed_descent_turns_back_from_a_risky_contact_or_tries(facts: Situation, turns_back: bool) -> None:
     decision, ticks = first_decision(Phase.DESCEND, facts, 0.1)
     assert (decision is not None and decision[1].reason is Reason.CONTACT_RISKY) is turns_back
     assert not turns_back or ticks == 0
