@@ -20,6 +20,7 @@ from scenarios.tracks.course import Course, Roughness
 from scenarios.tracks.drive_config import Departure
 from scenarios.tracks.profiles import Motion
 from scenarios.tracks.roads import RoadPoint
+from scenarios.tracks.suspension import dive_after
 from sim_autopilot.core.data import Deck
 
 _BRAKE_REACH_M = 3.0  # the vehicle brakes for a drone over its roof, not for one that waits ahead
@@ -111,10 +112,22 @@ def vehicle_at(memory: VehicleMemory, t_ns: int, plan: VehiclePlan) -> VehicleSt
     motion = _motion_at(memory, t_ns, course)
     swaying = _STILL
     if course.sway is not None and memory.departs_ns is not None:
-        swaying = course.sway.at((t_ns - memory.departs_ns) * 1e-9)
+        heave, pitch, roll = course.sway.at((t_ns - memory.departs_ns) * 1e-9)
+        swaying = heave, _dived(memory, t_ns, course, pitch), roll
     elif course.seaway is not None:
         swaying = course.seaway.at(0.0 if memory.started_ns is None else (t_ns - memory.started_ns) * 1e-9, motion)
     return state_on_road(t_ns, motion, course.road.at(motion.s_m), course.roughness, swaying)
+
+
+def _dived(memory: VehicleMemory, t_ns: int, course: Course, pitch: Vector3) -> Vector3:
+    """Return the body's pitch, its rate and acceleration, with what a brake adds that the drone's height began."""
+    brake = course.brake
+    if brake is None or brake.suspension is None or memory.brakes_ns is None or memory.departs_ns is None:
+        return pitch
+    before = course.profile.at((memory.brakes_ns - memory.departs_ns) * 1e-9)
+    stops_s = before.speed_m_s / brake.deceleration_m_s2
+    more = dive_after((t_ns - memory.brakes_ns) * 1e-9, brake.deceleration_m_s2, stops_s, brake.suspension)
+    return pitch[0] + more[0], pitch[1] + more[1], pitch[2] + more[2]
 
 
 def _motion_at(memory: VehicleMemory, t_ns: int, course: Course) -> Motion:

@@ -3,6 +3,7 @@
 import math
 from dataclasses import dataclass
 
+from scenarios.tracks.drive_config import SuspensionConfig
 from scenarios.tracks.profiles import Profile
 from scenarios.tracks.roads import Road
 from scenarios.tracks.seaway import Seaway
@@ -36,10 +37,14 @@ class Roughness:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class BrakeEvent:
-    """Emergency braking when the drone is `height_above_roof_m` or less above the roof."""
+    """Braking to a stop when the drone is `height_above_roof_m` or less above the roof.
+
+    The body dives by it on `suspension`, if it has one.
+    """
 
     deceleration_m_s2: float
     height_above_roof_m: float
+    suspension: SuspensionConfig | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

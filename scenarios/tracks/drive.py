@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from scenarios.tracks.clothoids import clothoid_road
-from scenarios.tracks.course import Course
+from scenarios.tracks.course import BrakeEvent, Course
 from scenarios.tracks.drive_config import SHIFT_CURVATURE, DriveTrack
 from scenarios.tracks.heights import FLAT, grade_line
 from scenarios.tracks.profiles import Profile, profile_of
@@ -30,7 +30,9 @@ def drive_course(track: DriveTrack) -> Course:
     road = clothoid_road(stretches, start_m=track.begins_m, heading_rad=track.heading_rad, slope=slope)
     profile = profile_of(track.legs)
     surface = Surface(waves=track.waves, humps=track.humps)
-    return Course(road=road, profile=profile, sway=sway_of(driven(road, profile), surface, track.suspension))
+    sway = sway_of(driven(road, profile), surface, track.suspension)
+    brake = None if track.brake is None else BrakeEvent(**track.brake.model_dump(), suspension=track.suspension)
+    return Course(road=road, profile=profile, brake=brake, sway=sway)
 
 
 def shifted(stretches: Sequence[Stretch], shifts: Sequence[Shift]) -> list[Stretch]:

@@ -44,6 +44,13 @@ class SuspensionConfig(StrictModel):
     track_m: Positive = 1.5
 
 
+class LateBrake(StrictModel):
+    """The vehicle brakes to a stop once the drone is so low over its roof."""
+
+    deceleration_m_s2: Positive
+    height_above_roof_m: Positive
+
+
 class DriveTrack(StrictModel):
     """A road and a drive along it in numbers; places are arc lengths from the road's beginning.
 
@@ -64,6 +71,7 @@ class DriveTrack(StrictModel):
     waves: tuple[tuple[NotNegative, Positive, float, float], ...] = ()
     # The drive from standstill: duration (s) and acceleration (m/s^2) of each leg; then the speed stays.
     legs: tuple[tuple[NotNegative, float], ...]
+    brake: LateBrake | None = None
     suspension: SuspensionConfig = SuspensionConfig()
 
     @model_validator(mode="after")

@@ -99,6 +99,25 @@ def sway_of(driven: Driven, surface: Surface, suspension: SuspensionConfig) -> S
     )
 
 
+def dive_after(since_s: float, deceleration_m_s2: float, lasts_s: float, suspension: SuspensionConfig) -> Motion:
+    """Return the pitch by which a body dives `since_s` after a brake began that lasts so long."""
+    begun = _pushed(since_s, suspension.dive_rad_s2_m * deceleration_m_s2, suspension)
+    ended = _pushed(since_s - lasts_s, -suspension.dive_rad_s2_m * deceleration_m_s2, suspension)
+    return begun[0] + ended[0], begun[1] + ended[1], begun[2] + ended[2]
+
+
+def _pushed(since_s: float, to_rad: float, suspension: SuspensionConfig) -> Motion:
+    """Return how a body that was at rest pitches `since_s` after it began to be pushed to an angle."""
+    if since_s <= 0.0:
+        return _AT_REST
+    w, d = 2.0 * math.pi * suspension.pitch_hz, suspension.damping
+    damped, fade = w * math.sqrt(1.0 - d**2), math.exp(-d * w * since_s)
+    sine, cosine = math.sin(damped * since_s), math.cos(damped * since_s)
+    angle = to_rad * (1.0 - fade * (cosine + d * w / damped * sine))
+    rate = to_rad * w**2 / damped * fade * sine
+    return angle, rate, w**2 * (to_rad - angle) - 2.0 * d * w * rate
+
+
 def _oscillate(
     frequency_hz: float, damping: float, base: Array, base_rate: Array, pushed: Array
 ) -> tuple[list[float], list[float]]:

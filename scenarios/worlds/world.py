@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from scenarios.config import RunConfig, Scenario, SensorsConfig
 from scenarios.simulation.noise import Seed
-from scenarios.tracks.drive_config import Departure, DriveTrack
+from scenarios.tracks.drive_config import Departure, DriveTrack, LateBrake
 from scenarios.worlds.distributions import Value
 from scenarios.worlds.draws import Draws
 from scenarios.worlds.driver import DRIVE_S, DrivePlan, plan_drive
@@ -91,6 +91,7 @@ def _world(name: str, seed: Seed, draws: Draws) -> World:
         humps=tuple(road.humps),
         waves=tuple(road.waves),
         legs=tuple(drive.legs),
+        brake=_late_brake(draws),
         suspension=vehicle.suspension,
     )
     waiting_m = max(_WAITING_MIN_M, vehicle.body.roof_height_m + _WAITING_OVER_ROOF_M)
@@ -123,6 +124,14 @@ def _departure(draws: Draws, sensors: SensorsConfig) -> Departure:
     """Return when the vehicle starts: once the drone hovers as near as it knows its own place."""
     radius_m = _HOVER_RADIUS_M + _OWN_STDS * sensors.own_state.position_std_m
     return Departure(hover_radius_m=radius_m, departs_s=draws.number("driver.departs_s"))
+
+
+def _late_brake(draws: Draws) -> LateBrake | None:
+    brake = LateBrake(
+        deceleration_m_s2=draws.number("driver.late_brake_m_s2"),
+        height_above_roof_m=draws.number("driver.late_brake_height_m"),
+    )
+    return brake if draws.yes("driver.brakes_late") else None
 
 
 def _drawn(

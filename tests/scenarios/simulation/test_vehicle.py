@@ -20,6 +20,7 @@ from scenarios.simulation.vehicle import (
 )
 from scenarios.simulation.vehicle_node import plan_of
 from scenarios.tracks.config import ShakeConfig
+from scenarios.worlds.world import draw_world
 from tests.rotations import matrix_of
 
 START_NS = 1_800_000_000_000_000_000
@@ -142,6 +143,25 @@ def test_braking_vehicle_brakes_once_the_drone_is_low_and_then_stands() -> None:
     assert speeds_m_s[150] == pytest.approx(7.0 - 6.0 * 0.5, abs=0.07)
     assert speeds_m_s[-1] == 0.0
     assert steps[-1][1].position_enu_m[0] == pytest.approx(x_m + 7.0 + 49.0 / 12.0, abs=0.1)
+
+
+def test_vehicle_of_a_world_that_brakes_late_brakes_and_dives_under_a_low_drone() -> None:
+    world = draw_world("world:late", 3)
+    plan, calm = plan_of(world.scenario, 3), plan_of(draw_world("world", 3).scenario, 3)
+    brake, memory = plan.course.brake, VehicleMemory(departs_ns=START_NS - 30_000_000_000)
+    assert brake is not None
+    assert calm.course.brake is None
+    east_m, north_m, road_m = vehicle_at(memory, START_NS, plan).position_enu_m
+    low = (east_m, north_m, road_m + plan.roof_height_m + 0.9 * brake.height_above_roof_m)
+    steps = driven(plan, [low] * 20, memory)
+    begins_ns = steps[-1][0].brakes_ns
+    assert begins_ns is not None
+    before, after = (vehicle_at(steps[-1][0], begins_ns + round(t_s * 1e9), plan) for t_s in (0.0, 0.2))
+    slower_m_s = math.hypot(*before.velocity_enu_m_s[:2]) - math.hypot(*after.velocity_enu_m_s[:2])
+    assert slower_m_s == pytest.approx(0.2 * brake.deceleration_m_s2, rel=1e-3)
+    unbraked = vehicle_at(memory, begins_ns + 200_000_000, plan)
+    nose_down = [rotate(one.orientation_wxyz, (1.0, 0.0, 0.0))[2] for one in (unbraked, after)]
+    assert nose_down[1] < nose_down[0] - 0.0005
 
 
 def test_braking_vehicle_does_not_brake_for_a_low_drone_beside_it() -> None:

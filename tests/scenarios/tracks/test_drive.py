@@ -12,7 +12,7 @@ from scenarios.tracks.drive import drive_course, driven, shifted
 from scenarios.tracks.drive_config import DriveTrack, SuspensionConfig
 from scenarios.tracks.heights import grade_line
 from scenarios.tracks.profiles import profile_of
-from scenarios.tracks.suspension import STEP_S, Array, Driven, Surface, sway_of
+from scenarios.tracks.suspension import STEP_S, Array, Driven, Surface, dive_after, sway_of
 
 STIFF = SuspensionConfig(dive_rad_s2_m=0.004, lean_rad_s2_m=0.01)
 FLAT = Surface(waves=(), humps=())
@@ -123,6 +123,21 @@ def test_body_is_at_rest_before_departure_and_behind_the_end() -> None:
     sway = sway_of(still(300, left_m_s2=2.0), FLAT, STIFF)
     assert sway.at(-1.0) == ((0.0, 0.0, 0.0),) * 3
     assert sway.at(100.0)[2][1:] == (0.0, 0.0)
+
+
+def test_body_dives_for_a_brake_that_nobody_planned_as_for_one_that_was() -> None:
+    course = drive_course(DriveTrack(kind="drive", begins_m=(0.0, 0.0), stretches=((500.0, 0.0, 0.0),), legs=BRAKES))
+    level = DriveTrack(kind="drive", begins_m=(0.0, 0.0), stretches=((500.0, 0.0, 0.0),), legs=BRAKES[:2])
+    pulled = drive_course(level)
+    assert course.sway is not None
+    assert pulled.sway is not None
+    for since_s in (0.0, 0.1, 0.3, 1.0, 2.4, 2.6, 4.0):
+        planned, before = course.sway.at(15.0 + since_s)[1], pulled.sway.at(15.0 + since_s)[1]
+        dives = dive_after(since_s, 4.0, 2.5, SuspensionConfig())
+        assert planned[:2] == pytest.approx((before[0] + dives[0], before[1] + dives[1]), abs=1e-4)
+
+
+BRAKES = ((5.0, 2.0), (10.0, 0.0), (2.5, -4.0))
 
 
 def test_drive_keeps_to_its_legs_and_its_bend() -> None:

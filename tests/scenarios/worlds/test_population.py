@@ -8,6 +8,7 @@ import pytest
 from scipy import stats
 
 from link.errors import UserError
+from scenarios.tracks.drive_config import DriveTrack
 from scenarios.worlds.distributions import Choice, Graded, Plain
 from scenarios.worlds.draws import Draws
 from scenarios.worlds.driver import EVENTS
@@ -65,6 +66,9 @@ def test_choices_have_their_weights(name: str) -> None:
     assert isinstance(choice, Choice)
     texts = [str(value) for _, _, value in drawn]
     counts = [texts.count(str(value)) for value in choice.values]
+    if len(choice.values) == 1:  # which leaves chance nothing
+        assert counts == [len(drawn)]
+        return
     wanted = np.array(choice.weights) / sum(choice.weights) * len(drawn)
     assert stats.chisquare(counts, wanted).pvalue > LEVEL / len(NAMES)
 
@@ -144,6 +148,14 @@ def test_poor_slice_differs_in_the_qualities_only() -> None:
     assert poor.scenario.track.model_dump(exclude={"departure"}) == whole.scenario.track.model_dump(
         exclude={"departure"}
     )
+
+
+def test_late_slice_differs_in_its_brake_only() -> None:
+    late, whole = draw_world("world:late", 5).scenario, draw_world("world", 5).scenario
+    assert isinstance(late.track, DriveTrack)
+    assert late.track.brake is not None
+    assert late.track.model_copy(update={"brake": None}) == whole.track
+    assert late.model_copy(update={"name": whole.name, "track": whole.track}) == whole
 
 
 def test_chosen_number_takes_the_place_of_the_drawn_one_alone() -> None:
