@@ -53,6 +53,8 @@ def companion_step(memory: StepMemory, inputs: StepInputs, system: System) -> tu
     memory = replace(memory, model=model, vehicle=vehicle)
     situation = _situation(memory, pad, inputs, system)
     memory = _look(memory, situation, pad, system.config)
+    memory = update_forecast(memory, situation, inputs, system)
+    situation = replace(situation, contact=memory.forecast.contact if memory.forecast.is_committed else None)
     before, warned = memory.progress, memory.sortie.warning
     memory, reply = take_events(memory, situation, inputs, system.config)
     phase = memory.progress.phase
@@ -61,7 +63,6 @@ def companion_step(memory: StepMemory, inputs: StepInputs, system: System) -> tu
     if phase in FOLLOWING_PHASES and before.phase not in FOLLOWING_PHASES:
         vehicle, pad = predict_pad(phase, memory.vehicle, inputs, system)
         memory, situation = replace(memory, vehicle=vehicle), with_pad(situation, pad)
-    memory = update_forecast(memory, situation, inputs, system)
     memory, plan = fly(memory, situation, inputs, system)
     memory, commands = _drive(memory, situation, inputs, system.config)
     outputs = StepOutputs(
@@ -148,7 +149,6 @@ def _situation(memory: StepMemory, pad: PadPath | None, inputs: StepInputs, syst
         ),
         waiting_point_enu_m=memory.places.waiting_point_enu_m,
         rival=inputs.rival,
-        contact=memory.forecast.contact if memory.forecast.is_committed else None,
         limits=inputs.limits,
         speed_limited_by=() if inputs.driver is None else inputs.driver.speed_parameters,
     )
