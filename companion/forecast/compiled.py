@@ -4,7 +4,7 @@ from pathlib import Path
 
 from link.compiled import file_digest, kept_kernel
 
-FILES = ("body.py", "knowledge.py", "rollout.py", "samples.py", "steering.py")
+FILES = ("knowledge.py", "rollout.py", "samples.py", "steering.py")
 """All that compiled functions of this package are in."""
 
 compiled_kernel = kept_kernel(file_digest(Path(__file__).with_name(name) for name in FILES))

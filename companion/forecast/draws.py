@@ -17,7 +17,7 @@ STEPS_MAX = 134  # as far as the pad is forecast, 4 s: 3.5 s of sinking and the 
 MODE = 7  # the column of the uniform numbers that chooses a sample's model of the estimator
 _SEED = 1_912
 _STEADY_COUNT, _EVENT_COUNT = 64, 32
-_NORMALS, _UNIFORMS, _TILTS, _BODIES = 20, 8, 4, 2
+_NORMALS, _UNIFORMS, _TILTS = 20, 8, 4
 
 
 class Draws(Struct, frozen=True, kw_only=True, eq=False):
@@ -30,7 +30,6 @@ class Draws(Struct, frozen=True, kw_only=True, eq=False):
         uniforms: (n, 8) from 0 to 1, exclusive.
         pushes: (n, `STEPS_MAX`, 2) standard normal.
         tilts: (n, 4) standard normal.
-        bodies: (n, 2) from 0 to 1, exclusive.
     """
 
     branch: IndexArray
@@ -39,7 +38,6 @@ class Draws(Struct, frozen=True, kw_only=True, eq=False):
     uniforms: Array
     pushes: Array
     tilts: Array
-    bodies: Array
 
 
 @cache
@@ -56,7 +54,6 @@ def draws() -> Draws:
         uniforms=numbers[:, _NORMALS:].copy(),
         pushes=pushes,
         tilts=np.asarray(ndtri(np.concatenate([_hypercube(generator, count, _TILTS) for count in counts]))),
-        bodies=np.concatenate([_hypercube(generator, count, _BODIES) for count in counts]),
     )
 
 

@@ -116,8 +116,7 @@ def _fly(path: Array, samples: Samples, sample: int, descent: Descent, out: Arra
         if height_m - samples.vertical[sample, 0] - lowest_m <= 0.0:
             out[IN_S] = k * DT_S
             off += known[:2] - path[before + k, :2] - course.shake_enu[:, k] - samples.deck[sample, 1:]
-            off += course.body.above_m * path[before + k, 3:]
-            lean += GRAVITY_M_S2 * (course.slope[k] + samples.deck[sample, 0] + path[before + k, 3])
+            lean += GRAVITY_M_S2 * (course.slope[k] + samples.deck[sample, 0])
             _touch(off, lean, sink_m_s + samples.vertical[sample, 1], course.air_enu_m_s2, out)
             return
         beside[:] = holds + GRAVITY_M_S2 * course.slope[_contact_at(k, height_m, sink_m_s, steps)]

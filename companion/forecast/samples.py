@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from companion.core.data import Array
-from companion.forecast.body import spring, sprung
 from companion.forecast.compiled import compiled_kernel
 
 IndexArray = NDArray[np.intp]
@@ -70,22 +69,6 @@ class Rules(NamedTuple):
     foot_radius_m: float
 
 
-class Body(NamedTuple):
-    """How the body stands on its wheels at the newest datum, for a gain of 1.
-
-    Attributes:
-        dive: its r and the rate of that, as `body` has them.
-        lean: likewise.
-        told_m_s2: (2,) which dive and lean the course's slope and shake have in them.
-        above_m: height of the pad over the road.
-    """
-
-    dive: tuple[float, float]
-    lean: tuple[float, float]
-    told_m_s2: tuple[float, float]
-    above_m: float
-
-
 class Course(NamedTuple):
     """What is expected, each step from now on.
 
@@ -99,7 +82,6 @@ class Course(NamedTuple):
         shake_enu: (2, m, 2) place and velocity of the pad beside the forecast, by a swing that is not followed.
         air_enu_m_s2: (2,) horizontal thrust by mass that holds against the air.
         model: (3, 2) place, velocity and acceleration of the virtual model beside the pad now.
-        body: of the vehicle.
     """
 
     direction: Array
@@ -111,7 +93,6 @@ class Course(NamedTuple):
     shake_enu: Array
     air_enu_m_s2: Array
     model: Array
-    body: Body
 
 
 class Samples(NamedTuple):
@@ -127,7 +108,6 @@ class Samples(NamedTuple):
         deviation: (n, 4, 2) state of the cascade now.
         vertical: (n, 2) height that the drone is lower than believed, m, and how much faster it sinks, m/s.
         deck: (n, 3, 2) slope of the deck, place and velocity of the pad's shake at the contact, off the course's.
-        gains_rad_s2_m: (n, 2) by which the body dives and leans.
         pushes: (n, m, 2) standard normal: of the sample's gusts, and of the errors of the one after it.
     """
 
@@ -139,7 +119,6 @@ class Samples(NamedTuple):
     deviation: Array
     vertical: Array
     deck: Array
-    gains_rad_s2_m: Array
     pushes: Array
 
 
@@ -153,9 +132,7 @@ class Descent(NamedTuple):
 
 @compiled_kernel
 def drive(samples: Samples, sample: int, course: Course, before: int) -> Array:
-    """Return place, velocity and acceleration of a sample's vehicle off its forecast, and its deck, (b + m, 5, 2).
-
-    Of the deck that is the slope by which its body dives and leans, height per length in W, and the slope's rate.
+    """Return place, velocity and acceleration (b + m, 3, 2) of a sample's vehicle off its forecast.
 
     Args:
         samples: all of them.
@@ -165,9 +142,7 @@ def drive(samples: Samples, sample: int, course: Course, before: int) -> Array:
     """
     vehicle, kind, event = samples.vehicle[sample], samples.kind[sample], samples.event[sample]
     steps = before + len(course.speed_m_s)
-    path = np.empty((steps, 5, 2))
-    step, dive, lean = spring(DT_S), course.body.dive, course.body.lean
-    (dives, leans), told = samples.gains_rad_s2_m[sample], course.body.told_m_s2
+    path = np.empty((steps, 3, 2))
     x, y, vx, vy = vehicle[0, 0], vehicle[0, 1], vehicle[1, 0], vehicle[1, 1]
     cx, cy = course.direction[0, 0], course.direction[0, 1]
     off_along, off_left = vehicle[2, 0] * cx + vehicle[2, 1] * cy, vehicle[2, 1] * cx - vehicle[2, 0] * cy
@@ -192,11 +167,6 @@ def drive(samples: Samples, sample: int, course: Course, before: int) -> Array:
         ax, ay = more_along * cx - more_left * cy, more_along * cy + more_left * cx
         path[k, 0, 0], path[k, 0, 1], path[k, 1, 0], path[k, 1, 1] = x, y, vx, vy
         path[k, 2, 0], path[k, 2, 1] = ax, ay
-        ahead, aside = dives * (dive[0] - told[0]), leans * (lean[0] - told[1])
-        path[k, 3, 0], path[k, 3, 1] = ahead * cx - aside * cy, ahead * cy + aside * cx
-        ahead, aside = dives * dive[1], leans * lean[1]
-        path[k, 4, 0], path[k, 4, 1] = ahead * cx - aside * cy, ahead * cy + aside * cx
-        dive, lean = sprung(dive, along, step), sprung(lean, left, step)
         x += (vx + 0.5 * ax * DT_S) * DT_S
         y += (vy + 0.5 * ay * DT_S) * DT_S
         vx += ax * DT_S

@@ -4,7 +4,7 @@ import numpy as np
 
 from companion.forecast.draws import STEPS_MAX
 from companion.forecast.rollout import roll_out
-from companion.forecast.samples import STEADY, Body, Course, Descent, Follower, Rules, Samples
+from companion.forecast.samples import STEADY, Course, Descent, Follower, Rules, Samples
 
 
 def compile_rollout() -> None:
@@ -19,7 +19,6 @@ def compile_rollout() -> None:
         shake_enu=np.zeros((2, 1, 2)),
         air_enu_m_s2=np.zeros(2),
         model=np.zeros((3, 2)),
-        body=Body(dive=(0.0, 0.0), lean=(0.0, 0.0), told_m_s2=(0.0, 0.0), above_m=0.0),
     )
     samples = Samples(
         vehicle=np.zeros((1, 3, 2)),
@@ -30,7 +29,6 @@ def compile_rollout() -> None:
         deviation=np.zeros((1, 4, 2)),
         vertical=np.zeros((1, 2)),
         deck=np.zeros((1, 3, 2)),
-        gains_rad_s2_m=np.zeros((1, 2)),
         pushes=np.zeros((1, STEPS_MAX, 2)),
     )
     drone, rules = Follower(*(1.0,) * len(Follower._fields)), Rules(*(1.0,) * len(Rules._fields))

@@ -14,7 +14,6 @@ from companion.autopilots.driver import AutopilotView, DriverMemory
 from companion.autopilots.frame_moves import NO_MOVES, FrameMoves
 from companion.core.data import Array
 from companion.core.reasons import Cause, Reason
-from companion.forecast.body import BodyLean
 from companion.forecast.drivers import Drivers
 from companion.forecast.gusts import Gusts
 from companion.integrity.frames import FixedPhases
@@ -171,7 +170,6 @@ class ForecastMemory(Struct, frozen=True, kw_only=True, eq=False):
         has_begun: this descent has left the height of waiting at a quiet moment; it holds until the descent ends.
         acceleration_ns: when the vehicle last told its acceleration, monotonic; None if it never did.
         turning_ns: likewise its heading, or how fast it turns.
-        body: how the vehicle's body stands on its wheels.
     """
 
     contact: ContactForecast | None = None
@@ -183,7 +181,6 @@ class ForecastMemory(Struct, frozen=True, kw_only=True, eq=False):
     has_begun: bool = False
     acceleration_ns: int | None = None
     turning_ns: int | None = None
-    body: BodyLean = BodyLean()
 
 
 class StepMemory(Struct, frozen=True, kw_only=True, eq=False):

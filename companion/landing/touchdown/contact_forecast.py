@@ -5,7 +5,6 @@ import math
 import numpy as np
 
 from companion.core.data import Quantity
-from companion.forecast.body import BodyLean, gains_rad_s2_m, update_body
 from companion.forecast.branches import make_events
 from companion.forecast.chances import sum_up
 from companion.forecast.draws import draws
@@ -18,7 +17,6 @@ from companion.landing.state.memory import ForecastMemory, StepMemory
 from companion.landing.state.step_data import StepInputs, System
 from companion.landing.touchdown.rollout_errors import as_driven, draw_deck, draw_errors, relearns_hz
 from companion.landing.touchdown.rollout_inputs import (
-    acceleration_in_course,
     course_of,
     deviation_now,
     follower_of,
@@ -39,7 +37,7 @@ _AGE_MAX_S = 1.0  # of data, beyond which the landing is broken off anyway
 
 def update_forecast(memory: StepMemory, situation: Situation, inputs: StepInputs, system: System) -> StepMemory:
     """Return the memory with the forecast of this step, None in a phase that does not descend."""
-    now_ns, known = situation.monotonic_ns, _update_known(memory, situation, inputs, system)
+    now_ns, known = situation.monotonic_ns, _update_known(memory, situation, inputs)
     if memory.progress.phase is not Phase.DESCEND:
         none = replace(known, contact=None, made_ns=None, is_committed=False, has_begun=False, risk=None)
         return replace(memory, forecast=none)
@@ -67,8 +65,8 @@ def _risk(before: float | None, contact: ContactForecast | None, situation: Situ
     return now if before is None or swings else before + _PERIOD_S / _RISK_MEAN_S * (now - before)
 
 
-def _update_known(memory: StepMemory, situation: Situation, inputs: StepInputs, system: System) -> ForecastMemory:
-    """Return what forecasts are made from, with what this step shows of driver, body, gusts and inertial unit."""
+def _update_known(memory: StepMemory, situation: Situation, inputs: StepInputs) -> ForecastMemory:
+    """Return what forecasts are made from, with what this step shows of driver, gusts and inertial unit."""
     before = memory.forecast
     told = {one.quantity for one in inputs.vehicle.measurements}
     return replace(
@@ -77,17 +75,7 @@ def _update_known(memory: StepMemory, situation: Situation, inputs: StepInputs, 
         gusts=_gusts(memory, inputs),
         acceleration_ns=situation.monotonic_ns if Quantity.ACCELERATION in told else before.acceleration_ns,
         turning_ns=situation.monotonic_ns if told & _TURNING else before.turning_ns,
-        body=_body(memory, situation, system),
     )
-
-
-def _body(memory: StepMemory, situation: Situation, system: System) -> BodyLean:
-    """Return how the vehicle's body stands after what the newest fix tells."""
-    pad, body = situation.pad, memory.forecast.body
-    newest_ns = system.estimator.newest_fix_ns(memory.vehicle.estimator)
-    if pad is None or newest_ns is None or newest_ns == body.t_ns:
-        return body
-    return update_body(body, newest_ns, *acceleration_in_course(pad))
 
 
 def _gusts(memory: StepMemory, inputs: StepInputs) -> Gusts:
@@ -145,7 +133,6 @@ def forecast_contact(
         deviation=deviation + errors.deviation,
         vertical=errors.vertical,
         deck=deck,
-        gains_rad_s2_m=gains_rad_s2_m(numbers.bodies) * (not pad.mounting.is_afloat),
         pushes=numbers.pushes,
     )
     descent = Descent(

@@ -9,7 +9,7 @@ from companion.autopilots.response import ATTITUDE_LAG_S, DRAG_PER_S, STATES, Ca
 from companion.config.companion import CompanionConfig
 from companion.core.data import Array
 from companion.forecast.draws import STEPS_MAX
-from companion.forecast.samples import DT_S, Body, Course, Follower, Rules
+from companion.forecast.samples import DT_S, Course, Follower, Rules
 from companion.landing.decisions.waiting import settled_speed_m_s
 from companion.landing.state.memory import StepMemory
 from companion.landing.state.step_data import StepInputs
@@ -104,39 +104,18 @@ def course_of(memory: StepMemory, relative: Approach, pad: PadPath, way: WayDown
     model[0] = np.array(relative.position_enu_m[:2]) - deviation[0]
     model[1] = np.array(relative.velocity_enu_m_s[:2]) - deviation[1]
     model[2] = reference.acceleration_enu_m_s2[:2] - acceleration[0, :2]
-    along_m_s2 = direction[:, 0] * acceleration[:, 0] + direction[:, 1] * acceleration[:, 1]
-    left_m_s2 = direction[:, 0] * acceleration[:, 1] - direction[:, 1] * acceleration[:, 0]
     return Course(
         direction=direction,
         speed_m_s=speed_m_s,
-        along_m_s2=along_m_s2,
-        left_m_s2=left_m_s2,
+        along_m_s2=direction[:, 0] * acceleration[:, 0] + direction[:, 1] * acceleration[:, 1],
+        left_m_s2=direction[:, 0] * acceleration[:, 1] - direction[:, 1] * acceleration[:, 0],
         way_down=way.path,
         slope=(-pad.grade if backs_up else pad.grade) * direction
         + (0.0 if pad.swing is None else _at(way.offset_s, pad, pad.swing.slope)),
         shake_enu=_shake_at(way.offset_s, pad),
         air_enu_m_s2=memory.model.tracking.air_enu_m_s2.copy(),
         model=model,
-        body=_body_of(memory, pad, float(along_m_s2[0]), float(left_m_s2[0])),
     )
-
-
-def _body_of(memory: StepMemory, pad: PadPath, along_m_s2: float, left_m_s2: float) -> Body:
-    """Return how the body stands; where the vehicle tells its tilt, that has in it what it is accelerated by now."""
-    body = memory.forecast.body
-    if pad.swing is None:
-        return Body(dive=body.dive, lean=body.lean, told_m_s2=(0.0, 0.0), above_m=pad.height_m)
-    told = (along_m_s2, left_m_s2)
-    return Body(dive=(along_m_s2, 0.0), lean=(left_m_s2, 0.0), told_m_s2=told, above_m=pad.swing.above_m)
-
-
-def acceleration_in_course(pad: PadPath) -> tuple[float, float]:
-    """Return by how much the pad is accelerated now along its course and to the left; one that stands is not."""
-    (vx, vy), (ax, ay) = pad.velocity_enu_m_s[0, :2].tolist(), pad.acceleration_enu_m_s2[0, :2].tolist()
-    speed_m_s = math.hypot(vx, vy)
-    if speed_m_s < _SLOW_M_S:
-        return 0.0, 0.0
-    return (vx * ax + vy * ay) / speed_m_s, (vx * ay - vy * ax) / speed_m_s
 
 
 def _at(offset_s: Array, pad: PadPath, values: Array) -> Array:

@@ -4,11 +4,10 @@ import numpy as np
 
 from companion.core.data import Array
 from companion.forecast.draws import STEPS_MAX
-from companion.forecast.samples import DT_S, STEADY, Body, Course, Descent, Follower, Rules, Samples
+from companion.forecast.samples import DT_S, STEADY, Course, Descent, Follower, Rules, Samples
 
 SPEED_M_S, SINK_M_S, HEIGHT_M = 8.0, 0.45, 0.34
 NEVER_S = 1e6
-LEVEL = Body(dive=(0.0, 0.0), lean=(0.0, 0.0), told_m_s2=(0.0, 0.0), above_m=0.0)
 DRONE = Follower(
     stiffness_per_s2=1.71,
     damping_per_s=1.8,
@@ -60,7 +59,6 @@ def descent(height_m: float = HEIGHT_M, **drone: float) -> Descent:
         shake_enu=np.zeros((2, steps, 2)),
         air_enu_m_s2=np.array([0.3, 0.4]),
         model=np.zeros((3, 2)),
-        body=LEVEL,
     )
     return Descent(course=course, drone=DRONE._replace(**drone), rules=RULES)
 
@@ -76,6 +74,5 @@ def samples(count: int = 1, *, delay_s: float = 0.2, kind: int = STEADY, event: 
         deviation=np.zeros((count, 4, 2)),
         vertical=np.zeros((count, 2)),
         deck=np.zeros((count, 3, 2)),
-        gains_rad_s2_m=np.zeros((count, 2)),
         pushes=np.zeros((count, STEPS_MAX, 2)),
     )

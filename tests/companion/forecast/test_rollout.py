@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from companion.core.data import GRAVITY_M_S2
-from companion.forecast import body, rollout, steering
+from companion.forecast import knowledge, rollout, steering
 from companion.forecast import samples as samples_of
 from companion.forecast.knowledge import relearn
 from companion.forecast.rollout import roll_out
@@ -178,11 +178,10 @@ def test_machine_code_is_its_python(monkeypatch: pytest.MonkeyPatch) -> None:
         vehicle=0.1 * generator.standard_normal(several.vehicle.shape),
         deviation=0.1 * generator.standard_normal(several.deviation.shape),
         pushes=generator.standard_normal(several.pushes.shape),
-        gains_rad_s2_m=generator.uniform(0.0, 0.01, several.gains_rad_s2_m.shape),
     )
     uneven = descent(push_std_m_s2=0.5, relearns_hz=3.0, error_std_m_s=0.1)
     compiled = roll_out(several, uneven, 0.17)
-    for module in (rollout, steering, samples_of, body):
+    for module in (rollout, steering, samples_of, knowledge):
         for name, kernel in vars(module).items():
             if hasattr(kernel, "py_func") and name != "roll_out":
                 monkeypatch.setattr(module, name, kernel.py_func)
