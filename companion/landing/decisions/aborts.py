@@ -103,7 +103,7 @@ def strays(s: Situation, c: CompanionConfig) -> bool:
 
 
 def _may_stand(a: Approach, c: CompanionConfig) -> bool:
-    """Return whether a drone is lower than its height errs and does not sink."""
+    """Return whether a drone is lower than its height errs and does not sink, with a contact or without."""
     return a.height_m < c.descent.sway.height_min_m and -a.climb_m_s < c.touchdown.blocked_speed_m_s
 
 
@@ -116,7 +116,7 @@ def _is_contact_risky(s: Situation, c: CompanionConfig) -> bool:
     if s.contact is None or s.approach is None or s.approach.height_m > c.descent.commit_height_m:
         return False
     is_risky = s.contact.unsafe > c.descent.risk.turns_back_min or s.contact.broken_off > _MOSTLY
-    return is_risky and not _may_stand(s.approach, c)
+    return is_risky and not _may_stand(s.approach, c) and not _has_touched(s, c)
 
 
 def _tell_risk(s: Situation, _: CompanionConfig) -> Cause:

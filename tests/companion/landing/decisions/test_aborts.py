@@ -150,6 +150,10 @@ MOST = CONFIG.descent.risk.turns_back_min
         (risky(0.02, 0.45), True),  # what it touches as it tries, it would touch anyway
         (risky(CONFIG.descent.sway.height_min_m - 0.01, 0.1), False),  # it may stand already
         (risky(CONFIG.descent.sway.height_min_m + 0.01, 0.1), True),
+        (
+            changed(risky(0.12, 0.1), reference=reference_at(-0.2), range_height_m=0.01),
+            False,
+        ),  # it does, on what it ranges
     ],
 )
 def test_a_committed_descent_turns_back_from_a_risky_contact_or_tries(facts: Situation, turns_back: bool) -> None:
