@@ -47,8 +47,8 @@ class SuspensionConfig(StrictModel):
 class LateBrake(StrictModel):
     """The vehicle brakes to a stop once the drone is so low over its roof."""
 
-    deceleration_m_s2: Positive
-    height_above_roof_m: Positive
+    deceleration_m_s2: Positive  # from once the drone is so low on, to a stop
+    height_above_roof_m: Positive  # of the drone, which is over the vehicle
 
 
 class DriveTrack(StrictModel):
@@ -71,7 +71,7 @@ class DriveTrack(StrictModel):
     waves: tuple[tuple[NotNegative, Positive, float, float], ...] = ()
     # The drive from standstill: duration (s) and acceleration (m/s^2) of each leg; then the speed stays.
     legs: tuple[tuple[NotNegative, float], ...]
-    brake: LateBrake | None = None
+    brake: LateBrake | None = None  # that the drone's height begins, whatever the legs say
     suspension: SuspensionConfig = SuspensionConfig()
 
     @model_validator(mode="after")
