@@ -16,6 +16,7 @@ from scenarios.tracks.suspension import STEP_S, Array, Driven, Surface, dive_aft
 
 STIFF = SuspensionConfig(dive_rad_s2_m=0.004, lean_rad_s2_m=0.01)
 FLAT = Surface(waves=(), humps=())
+BRAKES = ((5.0, 2.0), (10.0, 0.0), (2.5, -4.0))
 
 
 def still(count: int, *, along_m_s2: float = 0.0, left_m_s2: float = 0.0, speed_m_s: float = 0.0) -> Driven:
@@ -135,9 +136,6 @@ def test_body_dives_for_a_brake_that_nobody_planned_as_for_one_that_was() -> Non
         planned, before = course.sway.at(15.0 + since_s)[1], pulled.sway.at(15.0 + since_s)[1]
         dives = dive_after(since_s, 4.0, 2.5, SuspensionConfig())
         assert planned[:2] == pytest.approx((before[0] + dives[0], before[1] + dives[1]), abs=1e-4)
-
-
-BRAKES = ((5.0, 2.0), (10.0, 0.0), (2.5, -4.0))
 
 
 def test_drive_keeps_to_its_legs_and_its_bend() -> None:
