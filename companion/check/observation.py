@@ -58,6 +58,7 @@ class VehicleFacts:
         age_s: median from a fix's stamp to its arrival.
         std_m: the largest standard deviation, of any axis, that a fix states.
         has_velocity: it sends its velocity as well.
+        tells_acceleration: along its own axes; an inertial unit's.
         describes_pad: it answered for its pad.
         pad_refused_why: what was wrong with an answer, None where nothing was.
         antenna_behind_pad_m: by which the antenna is behind the pad's middle, as the vehicle describes it; 0 before.
@@ -74,6 +75,7 @@ class VehicleFacts:
     age_s: float | None = None
     std_m: float | None = None
     has_velocity: bool = False
+    tells_acceleration: bool = False
     describes_pad: bool = False
     pad_refused_why: str | None = None
     antenna_behind_pad_m: float = 0.0

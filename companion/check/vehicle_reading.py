@@ -32,6 +32,7 @@ class VehicleReader:
         self._fix_refused_why: str | None = None
         self._std_m: float | None = None
         self._has_velocity = False
+        self._tells_acceleration = False
         self._heading: tuple[int, float] | None = None
         self._offs: list[complex] = []
         self._speeds_m_s: list[float] = []
@@ -69,11 +70,12 @@ class VehicleReader:
             self._speeds_m_s.append(speed_m_s)
 
     def imu(self, payload: bytes) -> None:
-        """Take its heading, where it tells one."""
+        """Take its heading, and that it tells its acceleration, where it does."""
         try:
             message = cdr.decode(VehicleImu, payload)
         except PayloadError:
             return
+        self._tells_acceleration |= message.specific_force_flu_m_s2 is not None
         if message.orientation_wxyz is not None:
             self._heading = (message.t_ns, yaw_of(message.orientation_wxyz))
 
@@ -92,6 +94,7 @@ class VehicleReader:
             age_s=statistics.median(self._ages_s) if self._ages_s else None,
             std_m=self._std_m,
             has_velocity=self._has_velocity,
+            tells_acceleration=self._tells_acceleration,
             describes_pad=pad.is_answered,
             pad_refused_why=pad.refused_why,
             antenna_behind_pad_m=0.0 if pad.pad is None else pad.pad.antenna_to_pad_m[0],

@@ -1,6 +1,5 @@
 """The lines of the check: everything in order passes, and each thing amiss is told by its own line."""
 
-import math
 from pathlib import Path
 from typing import Any
 
@@ -9,7 +8,7 @@ import pytest
 from companion.autopilots.choice import driver_for
 from companion.check.assessment import MOTION, assess
 from companion.check.findings import Level, advised_values, is_ready
-from companion.check.observation import AutopilotFacts, VehicleFacts
+from companion.check.observation import AutopilotFacts
 from companion.config.companion import CompanionConfig
 from link.errors import UserError
 from link.mavlink.dialect import mavlink
@@ -17,6 +16,7 @@ from link.program.toml_config import validate
 from link.records import replace
 from link.zenoh.command_line import ZenohArguments
 from tests.companion.check.test_rules import ARDUCOPTER_46, PX4_DEFAULTS
+from tests.companion.check.test_vehicle_assessment import VEHICLE
 from tests.companion.world import configured
 
 GOOD = AutopilotFacts(
@@ -43,9 +43,6 @@ GOOD = AutopilotFacts(
     },
 )
 CONFIG = CompanionConfig()
-VEHICLE = VehicleFacts(
-    key="decklander/vehicle/fix", rate_hz=10.0, age_s=0.1, std_m=0.05, has_velocity=True, describes_pad=True
-)
 
 
 def test_everything_in_order_is_all_pass() -> None:
@@ -116,33 +113,6 @@ def test_what_the_companion_would_not_fly_fails_by_its_type(vehicle_type: int) -
         assert by_name["firmware"].level is Level.PASS
 
 
-@pytest.mark.parametrize(
-    ("changed", "line", "level"),
-    [
-        ({"rate_hz": 0.0}, "vehicle", Level.WARN),
-        ({"rate_hz": 0.0, "fix_refused_why": "the receiver has no fix"}, "vehicle", Level.FAIL),
-        ({"rate_hz": 1.0}, "vehicle fixes", Level.WARN),
-        ({"rate_hz": 5.0, "has_velocity": False}, "vehicle fixes", Level.WARN),
-        ({"age_s": 2.0}, "vehicle age", Level.FAIL),
-        ({"age_s": -3600.0}, "vehicle age", Level.FAIL),
-        ({"age_s": None}, "vehicle age", Level.WARN),
-        ({"heading_off_rad": math.pi}, "vehicle heading", Level.FAIL),
-        ({"heading_off_rad": -0.3}, "vehicle heading", Level.FAIL),
-        ({"antenna_behind_pad_m": 2.6}, "vehicle heading", Level.WARN),
-        ({"std_m": 1.0}, "vehicle accuracy", Level.WARN),
-        ({"std_m": 5.0}, "vehicle accuracy", Level.FAIL),
-        ({"std_m": None}, "vehicle accuracy", Level.WARN),
-        ({"describes_pad": False}, "vehicle pad", Level.FAIL),
-        ({"pad_width_m": 0.6}, "vehicle pad", Level.FAIL),
-        ({"describes_pad": False, "pad_refused_why": "antenna_to_pad_m.0: 60"}, "vehicle pad", Level.FAIL),
-    ],
-)
-def test_vehicle_amiss_is_told(changed: dict[str, Any], line: str, level: Level) -> None:
-    by_name = {one.name: one for one in assess(GOOD, replace(VEHICLE, **changed), 10.0, CONFIG)}
-    assert by_name[line].level is level
-    assert by_name[line].advice
-
-
 def test_silent_vehicle_fails_where_it_was_said_where_it_is_met() -> None:
     silent = replace(VEHICLE, rate_hz=0.0)
     for is_expected in (False, True):
@@ -163,48 +133,6 @@ def test_silent_vehicle_fails_where_it_was_said_where_it_is_met() -> None:
 )
 def test_endpoints_say_where_a_vehicle_is_met(given: dict[str, Any], *, are_given: bool) -> None:
     assert ZenohArguments(**given).are_given is are_given
-
-
-@pytest.mark.parametrize(
-    "changed",
-    [
-        {"antenna_behind_pad_m": 2.4},
-        {"antenna_behind_pad_m": -6.0},
-        {"antenna_behind_pad_m": 6.0, "tells_heading": True},
-    ],
-)
-def test_course_shows_the_heading_unless_the_antenna_is_far_behind_the_pad(changed: dict[str, Any]) -> None:
-    assert "vehicle heading" not in {one.name for one in assess(GOOD, replace(VEHICLE, **changed), 10.0, CONFIG)}
-
-
-@pytest.mark.parametrize(("rate_hz", "has_velocity"), [(5.0, True), (10.0, False)])
-def test_rate_that_shows_the_speed_passes(rate_hz: float, *, has_velocity: bool) -> None:
-    seen = replace(VEHICLE, rate_hz=rate_hz, has_velocity=has_velocity)
-    by_name = {one.name: one for one in assess(GOOD, seen, 10.0, CONFIG)}
-    assert by_name["vehicle fixes"].level is Level.PASS
-
-
-def test_heading_that_follows_the_course_passes() -> None:
-    by_name = {one.name: one for one in assess(GOOD, replace(VEHICLE, heading_off_rad=0.1), 10.0, CONFIG)}
-    assert by_name["vehicle heading"].level is Level.PASS
-
-
-@pytest.mark.parametrize(
-    ("off_rad", "speed_m_s", "is_afloat", "level"),
-    [
-        (0.4, 2.2, True, Level.PASS),
-        (0.4, 2.2, False, Level.FAIL),
-        (0.4, 10.0, True, Level.FAIL),
-        (-math.pi / 2.0, 2.2, True, Level.FAIL),
-        (math.pi, 1.4, True, Level.PASS),
-    ],
-)
-def test_heading_of_a_vessel_may_be_off_by_its_drift(
-    off_rad: float, speed_m_s: float, *, is_afloat: bool, level: Level
-) -> None:
-    seen = replace(VEHICLE, heading_off_rad=off_rad, compared_speed_m_s=speed_m_s, is_afloat=is_afloat)
-    by_name = {one.name: one for one in assess(GOOD, seen, 10.0, CONFIG)}
-    assert by_name["vehicle heading"].level is level
 
 
 def test_advised_values_make_an_arducopter_pass() -> None:

@@ -9,7 +9,7 @@ from rosbags.typesys.stores import ros2_humble as ros
 from companion.check.vehicle_reading import VehicleReader
 from companion.config.integrity import IntegrityConfig
 from link.frames.rotations import quaternion_from_yaw
-from link.messages import Fix, FixVelocity, VehicleImu
+from link.messages import Fix, FixVelocity, Vector3, VehicleImu
 from link.payloads import cdr
 from link.zenoh.inbox import Inbox
 from link.zenoh.pad_question import PadQuestion
@@ -61,6 +61,13 @@ def test_course_begins_at_the_speed_that_the_configuration_says() -> None:
     later = CONFIG.model_copy(update={"course_speed_min_m_s": 5.0})
     assert _after_a_drive(0.3, 1.0, 4.0, config=later).facts(NOT_ASKED).heading_off_rad is None
     assert _after_a_drive(0.3, 1.0, 6.0, config=later).facts(NOT_ASKED).heading_off_rad is not None
+
+
+@pytest.mark.parametrize(("force", "is_told"), [((0.1, 0.0, 9.8), True), (None, False)])
+def test_acceleration_is_told_by_a_unit_that_measures_one(force: Vector3 | None, *, is_told: bool) -> None:
+    reader = VehicleReader("decklander/vehicle/fix", CONFIG)
+    reader.imu(cdr.encode(VehicleImu(t_ns=START_NS, specific_force_flu_m_s2=force)))
+    assert reader.facts(NOT_ASKED).tells_acceleration is is_told
 
 
 def _without_a_fix() -> bytes:
