@@ -8,8 +8,10 @@ from companion.config.companion import CompanionConfig
 from companion.config.estimation import EstimatorKind
 from companion.config.planning import GuidanceConfig, GuidanceKind, SolverKind
 from companion.core.data import Array
+from companion.forecast.steering import lean_change
 from companion.forecast.warm_up import compile_rollout
 from companion.landing.state.step_data import System
+from companion.landing.steering.targets import way_down
 from companion.planning.guidance import Guidance, GuidanceMemory, PlanRequest, ReferenceState, Target
 from companion.planning.mpc import Mpc
 from companion.planning.mpc_report import ReportMpc
@@ -56,6 +58,7 @@ def warm_up(guidance: Guidance, config: CompanionConfig) -> None:
         )
         memory, _ = guidance.plan(memory, request)
     _compile_pad_motion(offset_s)
+    _compile_descent(offset_s, config)
     compile_rollout()
 
 
@@ -65,6 +68,11 @@ def _compile_pad_motion(offset_s: Array) -> None:
     tilted_lever(still, tilt, 1.0, 0.0, 1.0)
     yaw_rate(still, offset_s)
     tilted_deck(still, tilt, level, level)
+
+
+def _compile_descent(offset_s: Array, config: CompanionConfig) -> None:
+    way_down((2.0, -0.5, 0.0), offset_s, config.limits.flight_limits(), config.descent)
+    lean_change((0.0, 0.0), (0.0, 0.0), (0.0, 0.0), 1.0, 1.0)
 
 
 def build_node(

@@ -73,3 +73,36 @@ def test_two_processes_that_share_the_work_leave_nothing_to_compile() -> None:
     told = subprocess.run([sys.executable, "-c", _IN_TWO], capture_output=True, text=True, check=True).stdout
     of_the_estimator, of_both, of_a_step, _ = map(int, told.split())
     assert 0 < of_the_estimator < of_both == of_a_step
+
+
+_FLIGHT = """
+import sys
+from link.compiled import _kept_kernels
+from scenarios.campaigns.cells import draw, load_cell
+from scenarios.lockstep.lockstep import Lockstep
+
+def prepared():
+    return {(kernel.py_func.__module__, kernel.py_func.__name__, str(one)) for kernel, _ in _kept_kernels
+            for one in kernel.signatures}
+
+flight = Lockstep(draw(load_cell(sys.argv[1]), 3).scenario, 3)
+flight.step()
+before = prepared()
+end = flight.run()
+for module, name, _ in sorted(prepared() - before):
+    print(module, name)
+"""
+
+
+@pytest.mark.parametrize(
+    "cell",
+    [
+        "straight_5+sensors=nominal+wind=nominal+link=nominal",
+        "rough_road_8+sensors=nominal+firmware=ardupilot",
+        "ship_ss5+sensors=nominal",
+    ],
+)
+def test_no_step_of_a_flight_compiles_or_loads_a_kernel(cell: str) -> None:
+    """A kernel that is new in a flight is compiled in it after an update: the companion is silent for a second."""
+    told = subprocess.run([sys.executable, "-c", _FLIGHT, cell], capture_output=True, text=True, check=True).stdout
+    assert told == ""
