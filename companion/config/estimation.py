@@ -154,6 +154,7 @@ class HeadingConfig(StrictModel):
     # From which the course tells the heading: 0.1 m/s of error are 0.1 rad then, as of a low-cost attitude sensor.
     course_speed_min_m_s: Positive = 1.0
     known_std_rad: Positive = 0.5  # worse than this the heading is not told
+    unit_error_time_s: Positive = 60.0  # for which a told heading is off alike: by iron and steel beside the road
     curvature_std_rad_m: Positive = 0.1  # at the start; a car's tightest turn is some 0.2
     # Of drivers in curves, 0.2 g: streets for 30 to 60 km/h are built with side frictions of 0.28 to 0.17 (AASHTO 2011,
     # table 3-7). For the forecast of a vehicle of which only sightings tell.

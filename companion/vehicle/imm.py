@@ -23,7 +23,15 @@ from companion.vehicle import imm_mixing as mixing
 from companion.vehicle import steady_driving
 from companion.vehicle.deck_motion import passed
 from companion.vehicle.filter_step import Update, wrapped
-from companion.vehicle.imm_body import MOTIONS, learnt_body, motion_of, opened_body, told_modes, upright_modes
+from companion.vehicle.imm_body import (
+    MOTIONS,
+    learnt_body,
+    motion_of,
+    opened_body,
+    opened_unit,
+    told_modes,
+    upright_modes,
+)
 from companion.vehicle.imm_frames import moved_frame, own_rate_opened_m2_s2, ranged_pad, wandering
 from companion.vehicle.imm_kernels import CURVATURE, HEADING
 from companion.vehicle.imm_mixing import Modes
@@ -111,6 +119,8 @@ class ImmModel:
         if measurement.quantity is Quantity.POSITION:
             R, bias_variance = split_fix(R, self.config.receivers)
             white_variance = largest(R)
+        if measurement.quantity is Quantity.HEADING:
+            state = opened_unit(state, measurement)
         reading = (KINDS[measurement.quantity], _own(measurement.value), _own(R))
         tells_motion = measurement.quantity in MOTIONS
         tells_driving = tells_motion or measurement.quantity is self.placed_by
@@ -127,6 +137,7 @@ class ImmModel:
             seen_age_s=0.0 if measurement.quantity is Quantity.PAD else state.seen_age_s,
             height_age_s=0.0 if measurement.quantity in HEIGHTS else state.height_age_s,
             turn_age_s=0.0 if tells_turn else state.turn_age_s,  # what is only seen to turn is taken for a car
+            heading_bias_variance_rad2=state.heading_bias_variance_rad2,
             unmeasured_s=0.0 if tells_motion else state.unmeasured_s,
             deck=deck,
             sway=sway,
@@ -204,11 +215,12 @@ class ImmModel:
         return self.config.heading.known_std_rad**2
 
     def _noises(self, state: ImmState) -> Array:
-        """The modes' noise, (n, 17), as `imm_noise.process_noise` takes it."""
+        """The modes' noise, (n, 18), as `imm_noise.process_noise` takes it."""
         return noises_with(
             self.numbers,
             wandering(state, self.config.receivers),
             state.driving.psd_m2_s5(self.numbers.steady_m2_s5),
+            2.0 * state.heading_bias_variance_rad2 / self.config.heading.unit_error_time_s,
             turn_is_measured=state.turn_age_s < TURN_AGE_MAX_S,
         )
 

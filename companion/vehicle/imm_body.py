@@ -1,4 +1,4 @@
-"""How the filter comes to follow the tilt of the vehicle's body: told by the vehicle, or seen as the antenna's sway."""
+"""How the filter comes to follow the body's tilt, told or seen as its antenna's sway, and a told heading."""
 
 import numpy as np
 
@@ -8,12 +8,13 @@ from companion.vehicle.body_sway import BodySway, first_sway, learn_sway, sway_o
 from companion.vehicle.deck_motion import DeckMotion, first_motion, learn
 from companion.vehicle.imm_mixing import Modes
 from companion.vehicle.imm_numbers import Numbers, swing_of
-from companion.vehicle.imm_state import DECK, PLACE, TILT, ImmState, has_settled
-from companion.vehicle.imm_swing import HEAVE_RATE, ROLL, ROLL_RATE, SIZE, antenna_swing
+from companion.vehicle.imm_state import DECK, PLACE, TILT, ImmState, has_settled, open_states
+from companion.vehicle.imm_swing import HEAVE_RATE, ROLL, ROLL_RATE, SIZE, UNIT_HEADING, antenna_swing
 from link.records import replace
 
 MOTIONS = frozenset({Quantity.POSITION, Quantity.VELOCITY})
 SWINGING = np.array([HEAVE_RATE, HEAVE_RATE + 1, *TILT])
+_UNIT = np.array([UNIT_HEADING])
 _RATE = np.array([2, 3, HEAVE_RATE])  # what the velocity of the antenna has beside its swing
 
 
@@ -85,6 +86,23 @@ def open_deck(modes: Modes, lever_m: Array, variances: Array) -> Modes:
     return means, covariances + swung @ (variances[:, None] * swung.T), weights
 
 
+def opened_unit(state: ImmState, heading: Measurement) -> ImmState:
+    """Return the state before a heading is fused.
+
+    What a unit states says how far its compass or its antennas may be turned, which lasts, and how much it scatters. It
+    does not say how much it is of each, so it is taken for both.
+
+    Args:
+        state: so far.
+        heading: that a unit tells.
+    """
+    stated_rad2, before_rad2 = float(heading.covariance[0, 0]), state.heading_bias_variance_rad2
+    modes = state.modes
+    if stated_rad2 > before_rad2:
+        modes = open_states(modes, _UNIT, np.array([stated_rad2 - before_rad2]))
+    return replace(state, modes=modes, heading_bias_variance_rad2=stated_rad2)
+
+
 def upright_modes(state: ImmState) -> Modes:
     """Return the modes of a body that stands upright: from its swing or sway, which is soon past, no error grows."""
     if state.deck is None and state.sway is None:
@@ -101,7 +119,7 @@ def told_modes(state: ImmState) -> Modes:
 
 
 def motion_of(state: ImmState, config: ImmConfig, numbers: Numbers) -> Array:
-    """Return the numbers (17,) of the motion as `imm_mixing` takes them, with what was learnt of deck or body."""
+    """Return the numbers (18,) of the motion as `imm_mixing` takes them, with what was learnt of deck or body."""
     if state.deck is None and state.sway is None:
         return numbers.motion
     motion = numbers.motion.copy()

@@ -1,6 +1,6 @@
 """What the interacting turning models tell: the antenna's motion now and over the horizon, compiled.
 
-`motion` (17,) is as `imm_mixing` has it.
+`motion` (18,) is as `imm_mixing` has it.
 """
 
 import math
@@ -32,7 +32,7 @@ _SLIPS_M_S = 0.3  # aside: more is no error of a receiver
 
 @compiled_kernel
 def kinematics(states: Array, motion: Array) -> tuple[Array, Array, Array]:
-    """Return the antenna's position and velocity and the pad's acceleration in W, each (n, 3), of `states` (n, 25)."""
+    """Return the antenna's position and velocity and the pad's acceleration in W, each (n, 3), of `states` (n, 26)."""
     n = len(states)
     position, velocity, acceleration = np.empty((n, 3)), np.empty((n, 3)), np.empty((n, 3))
     for i in range(n):
@@ -52,7 +52,7 @@ def kinematics(states: Array, motion: Array) -> tuple[Array, Array, Array]:
 
 @compiled_kernel
 def kinematics_jacobian(x: Array, motion: Array) -> Array:
-    """Return the Jacobian `(9, 25)` of position, velocity and acceleration."""
+    """Return the Jacobian `(9, 26)` of position, velocity and acceleration."""
     G = np.zeros((9, SIZE))
     G[0, 0], G[1, 1], G[2, 8], G[8, 11] = 1.0, 1.0, 1.0, 1.0
     _, turn = antenna_swing(x, ROLL, motion[5:9])
@@ -71,13 +71,13 @@ def kinematics_jacobian(x: Array, motion: Array) -> Array:
 
 @compiled_kernel
 def braked_straight(x: Array, within_s: float, tau_s: float, knows_heading: bool) -> Array:
-    """Return the state (25,) with what moves it aside taken off, as far as it brakes to a standstill `within_s`.
+    """Return the state (26,) with what moves it aside taken off, as far as it brakes to a standstill `within_s`.
 
     What accelerates a vehicle aside without turning it is an error of the filter. It would turn a velocity that fades
     about, and a vehicle that brakes to a stop would be forecast to drive backwards, as one would that stands by now.
 
     Args:
-        x: state (25,).
+        x: state (26,).
         within_s: time to look ahead.
         tau_s: time constant of the acceleration.
         knows_heading: whether the heading says where ahead is; if not, the course does.
@@ -107,7 +107,7 @@ def braked_straight(x: Array, within_s: float, tau_s: float, knows_heading: bool
 
 @compiled_kernel
 def horizon(x: Array, P: Array, offset_s: Array, noise: Array, motion: Array) -> tuple[Array, Array]:
-    """Return the means `(n, 25)` and variances `(n, 8)` at `offset_s` (n,), not falling.
+    """Return the means `(n, 26)` and variances `(n, 8)` at `offset_s` (n,), not falling.
 
     Of the pad's place, because a heading that is not well known moves it about an antenna that is; of its rate upwards;
     and of the roll, its rate, the pitch and its rate.
@@ -148,7 +148,7 @@ def forecast_modes(
     Args:
         modes: the filter.
         offset_s: (n,) not falling.
-        noises: (n, 17) of the modes.
+        noises: (n, 18) of the modes.
         motion: its numbers.
         known_variance: of a heading that is known, rad^2; without one the lever arm has no direction.
 
@@ -182,7 +182,7 @@ def describe_modes(modes: Modes, motion: Array, known_variance: float) -> tuple[
         known_variance: as above.
 
     Returns:
-        The mean (25,); position, velocity and acceleration (9,) and their covariance (9, 9); and the variance of the
+        The mean (26,); position, velocity and acceleration (9,) and their covariance (9, 9); and the variance of the
         heading, rad^2.
     """
     directed = with_direction(motion, modes, known_variance)

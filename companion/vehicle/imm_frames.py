@@ -91,9 +91,9 @@ def horizontal_variance_m2(H: Array, weights: Array, covariances: Array, apart_m
     alone place is taken to be anywhere in W until a sighting tells, whether the frames are known to be one or not.
 
     Args:
-        H: (2, 25) Jacobian of the pad's place in W.
+        H: (2, 26) Jacobian of the pad's place in W.
         weights: (n,) of the modes.
-        covariances: (n, 25, 25).
+        covariances: (n, 26, 26).
         apart_m2: variance of how far apart the frames are.
     """
     by_fixes = H.copy()

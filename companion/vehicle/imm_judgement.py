@@ -42,7 +42,7 @@ def expect_manoeuvres(modes: Modes, unmeasured_s: float, begins_after_s: Array, 
         modes: the filter at the time of the reading.
         unmeasured_s: time since the last fix or velocity.
         begins_after_s: (n,) as `switching` takes it.
-        noises: (n, 17) of the modes.
+        noises: (n, 18) of the modes.
     """
     means, covariances, weights = modes[0].copy(), modes[1].copy(), modes[2].copy()
     _, begun = switching(begins_after_s, unmeasured_s)
@@ -111,8 +111,8 @@ def align_modes(means: Array, covariances: Array, course: Array) -> tuple[Array,
     else its heading was learnt from its course alone, and was wrong: no vehicle that drives on begins to go backwards.
 
     Args:
-        means: (n, 25) of the modes.
-        covariances: (n, 25, 25) likewise.
+        means: (n, 26) of the modes.
+        covariances: (n, 26, 26) likewise.
         course: (4,) speed from which on a course is one, m/s, variances of the heading about it and of a heading that
             is known, rad^2, and 1 where sensors tell the heading or how it turns.
     """

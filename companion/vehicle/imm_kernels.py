@@ -1,6 +1,6 @@
 """Compiled arithmetic of the turning model: one step of motion. Its noise is in `imm_noise`.
 
-State `x` (25,) of the vehicle in W:
+State `x` (26,) of the vehicle in W:
   0:2  p   horizontal position, m: the antenna's, and the pad's while it moves (`imm_mixing.glide`)
   2:4  v   horizontal velocity of the pad's centre, m/s, where the vehicle's body follows the road
   4:6  b   what changes the velocity apart from turning, m/s^2; decays with time constant tau
@@ -16,6 +16,7 @@ State `x` (25,) of the vehicle in W:
            its own offset (Gauss-Markov)
   18:24    roll and pitch of the body against the road, see `imm_swing`; zero until the vehicle tells them
   24  d    how fast the drone's own height, and with it all of W, comes to be too high, m/s (Gauss-Markov)
+  25  m    what the vehicle's unit tells of the heading too much, rad (Gauss-Markov)
 With `w = k |v|` and J the turn by +90 degrees: `dp = v, dv = w J v + b, db = w J b - b/tau, dpsi = w`. At constant
 `w` this has a closed form: in a frame that turns with the vehicle, `v` relaxes along `b` and nothing else happens.
 At rest `w` is zero, so a standing vehicle cannot turn. Braking ends at standstill. The curvature is driven by the
@@ -111,7 +112,7 @@ def climb(x: Array, y: Array, F: Array, by_v_s: float, by_b_s2: float) -> None:
     """Write height and grade into `y`, and their rows into `F`, after a drive from `x`.
 
     Args:
-        x: state (25,) before.
+        x: state (26,) before.
         y: the state afterwards, under way.
         F: its Jacobian, under way.
         by_v_s: what the velocity adds to the place, s.
@@ -132,10 +133,10 @@ def climb(x: Array, y: Array, F: Array, by_v_s: float, by_b_s2: float) -> None:
 
 @compiled_kernel
 def advance(x: Array, dt_s: float, tau_s: float, heave: Array, tilt: Array) -> tuple[Array, Array]:
-    """Return the state `dt_s` later and its Jacobian `(25, 25)`.
+    """Return the state `dt_s` later and its Jacobian `(26, 26)`.
 
     Args:
-        x: state (25,).
+        x: state (26,).
         dt_s: step, short against a turn (0.1 s).
         tau_s: time constant of `b`.
         heave: transition (3, 3) of height, rate and acceleration of the heave over `dt_s`.
@@ -175,8 +176,8 @@ def put_turn(F: Array, x: Array, y: Array, dt_s: float, t: Turn) -> None:
     """Write the rows of place, velocity, acceleration and heading into the Jacobian.
 
     Args:
-        F: the Jacobian (25, 25), the identity in these rows.
-        x: state (25,) before.
+        F: the Jacobian (26, 26), the identity in these rows.
+        x: state (26,) before.
         y: the state afterwards, as if nothing stopped.
         dt_s: step.
         t: the turn within it.
@@ -201,7 +202,7 @@ def halt(x: Array, y: Array, F: Array, tau_s: float, stop_s: float) -> None:
     """Write the state of a vehicle that stands after `stop_s` of braking into `y`, and its height's rows into `F`.
 
     Args:
-        x: state (25,) before.
+        x: state (26,) before.
         y: the state afterwards, as if nothing stopped.
         F: its Jacobian.
         tau_s: time constant of `b`.

@@ -1,11 +1,12 @@
 """Compiled steps of interacting turning models that differ in their noise only (Blom and Bar-Shalom 1988).
 
-`Modes` are means (n, 25), covariances (n, 25, 25) and probabilities (n,). Between measurements the vehicle may change
-from any mode to any other as a continuous Markov chain in which each begins at a rate of its own. `motion` (17,) is the
+`Modes` are means (n, 26), covariances (n, 26, 26) and probabilities (n,). Between measurements the vehicle may change
+from any mode to any other as a continuous Markov chain in which each begins at a rate of its own. `motion` (18,) is the
 time constant of the acceleration, s, the heave's angular frequency, rad/s, damping and standard deviation of its rate,
 m/s, the time constant of the clock's difference, s, the lever arm (3,) from the antenna to the pad in V and the pad's
 height above the axis of roll, m, the time constant of what the accelerometer reads too much, s, the same three numbers
-of roll and of pitch as of heave, rad, and the time constant of the rate of the drone's own height, s.
+of roll and of pitch as of heave, rad, and the time constants of the rate of the drone's own height and of what the
+unit tells of the heading too much, s.
 """
 
 import math
@@ -16,7 +17,7 @@ from companion.core.data import Array
 from companion.vehicle.compiled import compiled_kernel
 from companion.vehicle.imm_kernels import BEND, CLOCK, LEAK, advance
 from companion.vehicle.imm_noise import bend_step, curvature_left, process_noise
-from companion.vehicle.imm_swing import OWN_RATE, SIZE, heave_step, smooth_step
+from companion.vehicle.imm_swing import OWN_RATE, SIZE, UNIT_HEADING, heave_step, smooth_step
 from companion.vehicle.lever import turned
 from companion.vehicle.small_matrices import carried_through
 
@@ -116,7 +117,7 @@ def steps_of(dt_s: float, motion: Array) -> Steps:
 
     Args:
         dt_s: time to pass.
-        motion: (17,), see the module.
+        motion: (18,), see the module.
     """
     count = max(math.ceil(dt_s / STEP_MAX_S - 1e-9), 1)
     step_s = dt_s / count
@@ -134,15 +135,15 @@ def glide(x: Array, P: Array, steps: Steps, noise: Array, motion: Array) -> tupl
     It is the pad's centre that moves as `advance` says, and the antenna swings about it.
 
     Args:
-        x: mean (25,).
-        P: covariance (25, 25).
+        x: mean (26,).
+        P: covariance (26, 26).
         steps: as `steps_of` has them; the same for all modes.
-        noise: (17,) as `process_noise` takes it.
-        motion: (17,), see the module; a lever arm of zero where it has no known direction.
+        noise: (18,) as `process_noise` takes it.
+        motion: (18,), see the module; a lever arm of zero where it has no known direction.
     """
     count, step_s, heave, heave_noise, tilt, tilt_noise = steps
     clock_left, leak_left = math.exp(-step_s / motion[4]), math.exp(-step_s / motion[9])
-    own_rate_left = math.exp(-step_s / motion[16])
+    own_rate_left, unit_left = math.exp(-step_s / motion[16]), math.exp(-step_s / motion[17])
     x, P = shifted(x, P, motion[5:8], 1.0)
     for _ in range(count):
         Q = process_noise(x, step_s, noise, heave_noise, tilt_noise)
@@ -159,6 +160,8 @@ def glide(x: Array, P: Array, steps: Steps, noise: Array, motion: Array) -> tupl
         F[LEAK, LEAK] = leak_left
         x[OWN_RATE] *= own_rate_left
         F[OWN_RATE, OWN_RATE] = own_rate_left
+        x[UNIT_HEADING] *= unit_left
+        F[UNIT_HEADING, UNIT_HEADING] = unit_left
         P = carried_through(F, P) + Q
     x, P = shifted(x, P, motion[5:8], -1.0)
     return x, 0.5 * (P + P.T)
@@ -190,7 +193,7 @@ def with_direction(motion: Array, modes: Modes, known_variance: float) -> Array:
 def predict_modes(
     modes: Modes, dt_s: float, noises: Array, begins_after_s: Array, motion: Array, known_variance: float
 ) -> Modes:
-    """Return the filter `dt_s` later; `noises` (n, 17), the others as `switching` and `with_direction` have them."""
+    """Return the filter `dt_s` later; `noises` (n, 18), the others as `switching` and `with_direction` have them."""
     directed = with_direction(motion, modes, known_variance)
     means, covariances, weights = mix(modes, *switching(begins_after_s, dt_s))
     steps = steps_of(dt_s, directed)

@@ -10,7 +10,7 @@ import numpy as np
 from companion.core.data import Array
 from companion.vehicle.compiled import compiled_kernel
 from companion.vehicle.imm_kernels import BEND, CLOCK, LEAK, course
-from companion.vehicle.imm_swing import MOUNT, OWN_RATE, PITCH, ROLL, SIZE
+from companion.vehicle.imm_swing import MOUNT, OWN_RATE, PITCH, ROLL, SIZE, UNIT_HEADING
 from companion.vehicle.small_matrices import white_jerk
 
 MOTION = 8  # leading states that the non-linear motion touches
@@ -18,7 +18,7 @@ FOLLOWS = (0, 0, 1, 1, 1, 1, 2, 1)  # each of them: 2 is the curvature, 1 its in
 ALONG_NOISE, ACROSS_NOISE, RECEIVER_NOISE, OWN_NOISE = 0, 2, 6, 7
 HEADING_NOISE, CLOCK_NOISE, CURVATURE_STD, HEADING_AT_REST = 4, 8, 9, 10  # their places in the noise
 BEND_STD, BEND_ACCELERATION_STD, BEND_LENGTH, ROAD_NOISE, LEAK_NOISE, AFLOAT = 5, 11, 12, 13, 14, 15
-OWN_RATE_NOISE = 16
+OWN_RATE_NOISE, UNIT_NOISE = 16, 17
 
 
 @compiled_kernel
@@ -48,17 +48,18 @@ def bend_step(x: Array, dt_s: float, noise: Array) -> tuple[float, float]:
 
 @compiled_kernel
 def process_noise(x: Array, dt_s: float, noise: Array, heave_noise: Array, tilt_noise: Array) -> Array:
-    """Return Q `(25, 25)` over `dt_s`.
+    """Return Q `(26, 26)` over `dt_s`.
 
     Args:
-        x: state (25,), whose velocity says what is along and what is across.
+        x: state (26,), whose velocity says what is along and what is across.
         dt_s: step.
-        noise: (17,) jerk along and across the track, m^2/s^5; lateral acceleration, m^2/s^5; lowest speed for the
+        noise: (18,) jerk along and across the track, m^2/s^5; lateral acceleration, m^2/s^5; lowest speed for the
             curvature, m/s; heading, rad^2/s; standard deviation of the grade's change, 1/m; the receiver's and the
             drone's own wandering, m^2/s; clock, s^2/s; standard deviation of the curvature in the long run, rad/m;
             heading at rest, rad^2/s; standard deviation of a vertical curve's acceleration, m/s^2; its length, m;
             height of the road, m^2/m; what the accelerometer reads too much, m^2/s^5; 1 for a vehicle that heaves at
-            rest, too, else 0; the rate of the drone's own height, m^2/s^3.
+            rest, too, else 0; the rate of the drone's own height, m^2/s^3; what the unit tells of the heading too much,
+            rad^2/s.
         heave_noise: (3, 3) of the heave over `dt_s`, its place first.
         tilt_noise: (2, 2, 2) of roll and pitch.
     """
@@ -78,7 +79,7 @@ def process_noise(x: Array, dt_s: float, noise: Array, heave_noise: Array, tilt_
         Q[place, offset] = Q[offset, place] = noise[OWN_NOISE] * dt_s
         Q[offset, offset] = (noise[RECEIVER_NOISE] + noise[OWN_NOISE]) * dt_s
     Q[CLOCK, CLOCK], Q[LEAK, LEAK] = noise[CLOCK_NOISE] * dt_s, noise[LEAK_NOISE] * dt_s
-    Q[OWN_RATE, OWN_RATE] = noise[OWN_RATE_NOISE] * dt_s
+    Q[OWN_RATE, OWN_RATE], Q[UNIT_HEADING, UNIT_HEADING] = noise[OWN_RATE_NOISE] * dt_s, noise[UNIT_NOISE] * dt_s
     return Q
 
 
@@ -87,8 +88,8 @@ def add_jerk(Q: Array, x: Array, dt_s: float, noise: Array, share: float) -> Non
     """Add the jerk along the track and across it.
 
     Args:
-        Q: (25, 25) changed.
-        x: state (25,).
+        Q: (26, 26) changed.
+        x: state (26,).
         dt_s: step.
         noise: as `process_noise` takes it.
         share: by which the track is known, 0 to 1.

@@ -29,6 +29,7 @@ from companion.vehicle.imm_noise import (
     OWN_NOISE,
     OWN_RATE_NOISE,
     RECEIVER_NOISE,
+    UNIT_NOISE,
 )
 from link.messages import PadGeometry, Vector3
 
@@ -72,14 +73,14 @@ class Numbers:
     """A configuration as the kernels take it.
 
     Attributes:
-        motion: (17,) as `imm_mixing` has it.
+        motion: (18,) as `imm_mixing` has it.
         begins_after_s: (n,) of the modes, as `imm_mixing.switching` takes it.
-        noises: (n, 17) as `imm_noise.process_noise` takes them, but for what depends on the state (`noises_with`).
+        noises: (n, 18) as `imm_noise.process_noise` takes them, but for what depends on the state (`noises_with`).
         is_steady: (2, n) whether each mode is steady along the track, and across it.
         steady_m2_s5: how fast a steady driver's, or helm's, accelerations along the track and across it walk: the
             ordinary one's, and at most.
         lever_m: (4,) from the antenna to the pad in V, and the pad's height above the axis of roll.
-        prior_variances: (25,) of every state but position, offset and clock, when nothing else is known.
+        prior_variances: (26,) of every state but position, offset and clock, when nothing else is known.
         courses: (4,) as `imm_judgement.align_modes` takes it, while no sensor tells the heading, and while one does.
     """
 
@@ -119,6 +120,7 @@ def numbers_of(config: ImmConfig, deck: Deck) -> Numbers:
                 *level,
                 *level,
                 config.receivers.own_height_rate_time_s,
+                config.heading.unit_error_time_s,
             ]
         ),
         begins_after_s=np.array([mode.begins_after_s for mode in modes]),
@@ -146,13 +148,14 @@ def noises_with(
     numbers: Numbers,
     wandering: tuple[float, float, float],
     psd_m2_s5: tuple[float, float],
+    unit_rad2_s: float,
     *,
     turn_is_measured: bool,
 ) -> Array:
-    """Return the modes' noise (n, 17) with what depends on the state.
+    """Return the modes' noise (n, 18) with what depends on the state.
 
     `wandering` is as `imm_frames.wandering` returns it. `psd_m2_s5` is how fast the accelerations along the track and
-    across it walk while nothing new begins.
+    across it walk while nothing new begins, `unit_rad2_s` how fast what the unit tells of the heading too much does.
 
     Where the drone's own place does not wander, fixes have corrections, and are dated without an error.
     A vehicle whose turning is measured may be one that turns on the spot. Any other is taken for a car: it turns no
@@ -160,6 +163,7 @@ def noises_with(
     """
     noises = numbers.noises.copy()
     noises[:, [RECEIVER_NOISE, OWN_NOISE, OWN_RATE_NOISE]] = wandering
+    noises[:, UNIT_NOISE] = unit_rad2_s
     noises[numbers.is_steady[0], ALONG_NOISE], noises[numbers.is_steady[1], ACROSS_NOISE] = psd_m2_s5
     if not wandering[1]:
         noises[:, CLOCK_NOISE] = 0.0
@@ -186,7 +190,7 @@ def _prior_variances(config: ImmConfig, *, is_afloat: bool) -> Array:
     vertical = [0.0, grade, heave_rate, heave_change]
     tilt = swing.tilt.std**2
     tilting = [tilt, tilt * (2.0 * math.pi * swing.tilt.frequency_hz) ** 2]
-    driven = [bend, config.road.gravity_leak_std_m_s2**2, *tilting, *tilting, 0.0, 0.0, 0.0]
+    driven = [bend, config.road.gravity_leak_std_m_s2**2, *tilting, *tilting, 0.0, 0.0, 0.0, 0.0]
     return np.array([0.0, 0.0, *moving, *vertical, 0.0, 0.0, 0.0, 0.0, *driven])
 
 
@@ -223,5 +227,6 @@ def _noise(config: ImmConfig, mode: SteadyConfig, *, is_afloat: bool) -> tuple[f
         0.0 if is_afloat else config.road.height_psd_m2_m,
         2.0 * config.road.gravity_leak_std_m_s2**2 / config.road.gravity_leak_time_s,
         float(is_afloat),
+        0.0,
         0.0,
     )

@@ -18,6 +18,7 @@ from companion.vehicle.imm_swing import (
     ROLL,
     ROLL_RATE,
     SIZE,
+    UNIT_HEADING,
     antenna_swing,
     pad_swing,
 )
@@ -39,13 +40,13 @@ def horizontal_acceleration(x: Array) -> tuple[Array, Array]:
 
 @compiled_kernel
 def antenna_velocity(x: Array, lever: Array) -> tuple[Array, Array]:
-    """Return the antenna's velocity (3,), m/s, and its Jacobian (3, 25).
+    """Return the antenna's velocity (3,), m/s, and its Jacobian (3, 26).
 
     The pad's centre goes where the road goes; behind it by `lever` the antenna swings out as the vehicle turns, and
     is still lower where the road begins to climb; it swings as the body tilts.
 
     Args:
-        x: state (25,).
+        x: state (26,).
         lever: (4,) from the antenna to the pad in V, and the pad's height above the axis of roll, m; zero where they
             have no known direction.
     """
@@ -67,12 +68,12 @@ def antenna_velocity(x: Array, lever: Array) -> tuple[Array, Array]:
 
 @compiled_kernel
 def observe(kind: int, x: Array, lever: Array, sees_heading: bool) -> tuple[Array, Array]:
-    """Return what a sensor reads at `x`, `(m,)`, and its Jacobian `(m, 25)`.
+    """Return what a sensor reads at `x`, `(m,)`, and its Jacobian `(m, 26)`.
 
     Args:
         kind: POSITION, VELOCITY, HEADING, YAW_RATE, PAD, ACCELERATION, TILT (roll, pitch and their rates), SURFACE (the
             pad's height) or COURSE (the course minus the heading).
-        x: state (25,).
+        x: state (26,).
         lever: (4,) from the antenna to the pad in V, and the pad's height above the axis of roll, m.
         sees_heading: whether the heading is known, so that the lever arm has a direction.
     """
@@ -101,7 +102,7 @@ def observe(kind: int, x: Array, lever: Array, sees_heading: bool) -> tuple[Arra
 
 @compiled_kernel
 def pad_place(x: Array) -> tuple[Array, Array]:
-    """Return the place (3,) that the state holds, m, and its Jacobian (3, 25)."""
+    """Return the place (3,) that the state holds, m, and its Jacobian (3, 26)."""
     z, H = np.zeros(3), np.zeros((3, SIZE))
     z[0], z[1], z[2] = x[0], x[1], x[8]
     H[0, 0], H[1, 1], H[2, 8] = 1.0, 1.0, 1.0
@@ -110,7 +111,7 @@ def pad_place(x: Array) -> tuple[Array, Array]:
 
 @compiled_kernel
 def read_position(x: Array, known: Array) -> tuple[Array, Array]:
-    """Return what the vehicle's receiver reads of its antenna's place (3,), m, and the Jacobian (3, 25)."""
+    """Return what the vehicle's receiver reads of its antenna's place (3,), m, and the Jacobian (3, 26)."""
     z, H = pad_place(x)
     late, change = antenna_velocity(x, known)
     swing, turn = antenna_swing(x, ROLL, known)
@@ -123,10 +124,10 @@ def read_position(x: Array, known: Array) -> tuple[Array, Array]:
 
 @compiled_kernel
 def read_pad(x: Array, lever: Array, above_m: float, sees_heading: bool) -> tuple[Array, Array]:
-    """Return where the drone sees the pad's centre (3,), m, and the Jacobian (3, 25).
+    """Return where the drone sees the pad's centre (3,), m, and the Jacobian (3, 26).
 
     Args:
-        x: state (25,).
+        x: state (26,).
         lever: (4,) from the antenna to the pad in V.
         above_m: the pad's height above the axis of roll; 0 while the lever arm has no direction.
         sees_heading: whether it has one.
@@ -147,7 +148,7 @@ def read_pad(x: Array, lever: Array, above_m: float, sees_heading: bool) -> tupl
 
 @compiled_kernel
 def read_velocity(x: Array, known: Array) -> tuple[Array, Array]:
-    """Return what the vehicle's receiver reads of its antenna's velocity (3,), m/s, and the Jacobian (3, 25)."""
+    """Return what the vehicle's receiver reads of its antenna's velocity (3,), m/s, and the Jacobian (3, 26)."""
     z, H = antenna_velocity(x, known)
     late, change = horizontal_acceleration(x)
     z[:2] -= x[CLOCK] * late
@@ -158,10 +159,11 @@ def read_velocity(x: Array, known: Array) -> tuple[Array, Array]:
 
 @compiled_kernel
 def read_heading(x: Array) -> tuple[Array, Array]:
-    """Return the heading (1,), rad, and its Jacobian (1, 25)."""
+    """Return the heading (1,), rad, as the vehicle's unit tells it, and its Jacobian (1, 26)."""
     speed, ux, uy = course(x)
     z, H = np.zeros(1), np.zeros((1, SIZE))
-    z[0], H[0, 7] = x[7] - x[CLOCK] * x[6] * speed, 1.0
+    z[0] = x[7] + x[UNIT_HEADING] - x[CLOCK] * x[6] * speed
+    H[0, 7], H[0, UNIT_HEADING] = 1.0, 1.0
     H[0, 6], H[0, CLOCK] = -x[CLOCK] * speed, -x[6] * speed
     H[0, 2], H[0, 3] = -x[CLOCK] * x[6] * ux, -x[CLOCK] * x[6] * uy
     return z, H
@@ -169,7 +171,7 @@ def read_heading(x: Array) -> tuple[Array, Array]:
 
 @compiled_kernel
 def read_yaw_rate(x: Array) -> tuple[Array, Array]:
-    """Return the yaw rate (1,), rad/s, and its Jacobian (1, 25)."""
+    """Return the yaw rate (1,), rad/s, and its Jacobian (1, 26)."""
     speed, ux, uy = course(x)
     z, H = np.zeros(1), np.zeros((1, SIZE))
     z[0], H[0, 6] = x[6] * speed, speed
@@ -179,7 +181,7 @@ def read_yaw_rate(x: Array) -> tuple[Array, Array]:
 
 @compiled_kernel
 def read_acceleration(x: Array) -> tuple[Array, Array]:
-    """Return what the accelerometer reads along V (1,), m/s^2, and its Jacobian (1, 25)."""
+    """Return what the accelerometer reads along V (1,), m/s^2, and its Jacobian (1, 26)."""
     z, H = np.zeros(1), np.zeros((1, SIZE))
     hx, hy = math.cos(x[7]), math.sin(x[7])
     z[0] = hx * x[4] + hy * x[5] + x[LEAK]
@@ -189,7 +191,7 @@ def read_acceleration(x: Array) -> tuple[Array, Array]:
 
 @compiled_kernel
 def read_tilt(x: Array) -> tuple[Array, Array]:
-    """Return roll, pitch, rad, and their rates, rad/s, (4,), as the vehicle's unit tells them; the Jacobian (4, 25).
+    """Return roll, pitch, rad, and their rates, rad/s, (4,), as the vehicle's unit tells them; the Jacobian (4, 26).
 
     A road that climbs is nose up, which is negative, and the vehicle turns with it as the road bends.
     """
@@ -206,7 +208,7 @@ def read_tilt(x: Array) -> tuple[Array, Array]:
 
 @compiled_kernel
 def read_course(x: Array) -> tuple[Array, Array]:
-    """Return the course minus the heading (1,), rad, and its Jacobian (1, 25)."""
+    """Return the course minus the heading (1,), rad, and its Jacobian (1, 26)."""
     speed = math.hypot(x[2], x[3])
     z, H = np.zeros(1), np.zeros((1, SIZE))
     z[0], H[0, 7] = math.atan2(x[3], x[2]) - x[7], -1.0

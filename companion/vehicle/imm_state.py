@@ -21,7 +21,7 @@ from companion.vehicle.imm_kernels import BEND, CLOCK, CURVATURE, HEADING, LEAK,
 from companion.vehicle.imm_mixing import Modes
 from companion.vehicle.imm_numbers import Numbers
 from companion.vehicle.imm_sensors import observe
-from companion.vehicle.imm_swing import MOUNT, OWN_RATE, ROLL, SIZE
+from companion.vehicle.imm_swing import MOUNT, OWN_RATE, ROLL, SIZE, UNIT_HEADING
 from companion.vehicle.steady_driving import SteadyDriving
 from link.records import replace
 
@@ -49,7 +49,7 @@ def without_heading(modes: Modes) -> Modes:
 
 
 def open_place_and_offset(covariances: Array, step: Array) -> Array:
-    """Return `covariances` (n, 25, 25) with `step` (3, 3), m^2, more of place and offset as one unknown."""
+    """Return `covariances` (n, 26, 26) with `step` (3, 3), m^2, more of place and offset as one unknown."""
     moved = covariances.copy()
     for rows in (PLACE, OFFSET):
         for columns in (PLACE, OFFSET):
@@ -83,6 +83,7 @@ class ImmState(Struct, frozen=True, kw_only=True, eq=False):
         seen_age_s: how long ago the pad was seen, or known to be under the drone; infinite before.
         height_age_s: how long ago that or a range told how high it is for the drone; infinite before.
         turn_age_s: how long ago a sensor told the heading or the yaw rate.
+        heading_bias_variance_rad2: of what a unit tells of the heading too much for long; 0 until it tells one.
         unmeasured_s: how long ago place or velocity was told.
         deck: how the deck swings; None until the vehicle has told its tilt.
         sway: how its body sways that does not tell its tilt; None until the vehicle is known well enough, and then.
@@ -95,6 +96,7 @@ class ImmState(Struct, frozen=True, kw_only=True, eq=False):
     seen_age_s: float = math.inf
     height_age_s: float = math.inf
     turn_age_s: float = math.inf
+    heading_bias_variance_rad2: float = 0.0
     unmeasured_s: float = 0.0
     deck: DeckMotion | None = None
     sway: BodySway | None = None
@@ -225,12 +227,12 @@ def _move_frame(state: ImmState, sighting: Measurement, receivers: ReceiversConf
 
 
 def _restart(state: ImmState, place: Measurement, config: ImmConfig, numbers: Numbers) -> ImmState:
-    """Restart at `place`, but for offset, heading, clock and deck."""
+    """Restart at `place`, but for offset, heading, clock, unit and deck."""
     x, P = mixing.combine(*state.modes)
     means, covariances, weights = start_state(place, config, numbers).modes
     means[:, PLACE] += x[OFFSET]
     means[:, OFFSET] = x[OFFSET]
-    for kept in (HEADING, CLOCK, *DECK):
+    for kept in (HEADING, CLOCK, UNIT_HEADING, *DECK):
         means[:, kept], covariances[:, kept, kept] = x[kept], P[kept, kept]
     age_s = 0.0 if place.quantity is Quantity.PAD else math.inf
     return replace(state, modes=(means, covariances, weights), seen_age_s=age_s, height_age_s=age_s)

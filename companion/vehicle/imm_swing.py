@@ -19,15 +19,16 @@ from companion.vehicle.small_matrices import carried_through, times, white_jerk
 HEAVE_RATE = 10
 ROLL, ROLL_RATE, PITCH, PITCH_RATE, MOUNT = 18, 19, 20, 21, 22
 OWN_RATE = 24  # the first state that is none of the deck's
-SIZE = 25
+UNIT_HEADING = 25
+SIZE = 26
 
 
 @compiled_kernel
 def antenna_swing(x: Array, first: int, lever: Array) -> tuple[Array, Array]:
-    """Return how far (3,) the tilt moves the antenna in W, or how fast, and its Jacobian (3, 25).
+    """Return how far (3,) the tilt moves the antenna in W, or how fast, and its Jacobian (3, 26).
 
     Args:
-        x: state (25,).
+        x: state (26,).
         first: `ROLL` for places, `ROLL_RATE` for velocities.
         lever: (4,) from the antenna to the pad in V, and the pad's height above the axis of roll, m.
     """
@@ -51,7 +52,7 @@ def antenna_swing(x: Array, first: int, lever: Array) -> tuple[Array, Array]:
 
 @compiled_kernel
 def put_turned(H: Array, x: Array, column: int, change: tuple[float, float, float]) -> None:
-    """Add `change`, forward, left and up, to a column of a Jacobian (3, 25) in W."""
+    """Add `change`, forward, left and up, to a column of a Jacobian (3, 26) in W."""
     east, north = turned(change[0], change[1], x[7])
     H[0, column] += east
     H[1, column] += north
@@ -60,10 +61,10 @@ def put_turned(H: Array, x: Array, column: int, change: tuple[float, float, floa
 
 @compiled_kernel
 def pad_swing(x: Array, first: int, above_m: float) -> tuple[Array, Array]:
-    """Return how far (3,) the tilt moves what is `above_m` over the axis in W, and its Jacobian (3, 25).
+    """Return how far (3,) the tilt moves what is `above_m` over the axis in W, and its Jacobian (3, 26).
 
     Args:
-        x: state (25,).
+        x: state (26,).
         first: `ROLL` for places, `ROLL_RATE` for velocities.
         above_m: height.
     """
@@ -79,11 +80,11 @@ def pad_swing(x: Array, first: int, above_m: float) -> tuple[Array, Array]:
 
 @compiled_kernel
 def pad_swing_acceleration(x: Array, motion: Array) -> tuple[Array, Array]:
-    """Return the horizontal acceleration (2,) of the pad by its swing, m/s^2, and its Jacobian (2, 25).
+    """Return the horizontal acceleration (2,) of the pad by its swing, m/s^2, and its Jacobian (2, 26).
 
     Args:
-        x: state (25,).
-        motion: (17,) as `imm_mixing` has it.
+        x: state (26,).
+        motion: (18,) as `imm_mixing` has it.
     """
     y, H = x.copy(), np.zeros((2, SIZE))
     for first, k in ((ROLL, 10), (PITCH, 13)):

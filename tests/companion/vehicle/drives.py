@@ -50,6 +50,7 @@ class Sensors:
     fix_bias_std_m: float = 0.0
     velocity_std_m_s: float = 0.0
     heading_std_rad: float = 0.0
+    heading_bias_rad: float = 0.0
     yaw_rate_std_rad_s: float = 0.0
     rate_hz: float = 10.0
     delay_s: float = 0.06
@@ -191,6 +192,7 @@ def _vehicle_sensors(
     dt = 1.0 / sensors.rate_hz
     fade = math.exp(-dt / 60.0)
     bias = sensors.fix_bias_std_m * rng.standard_normal(3)
+    heading_bias_rad = sensors.heading_bias_rad
     fix_covariance = (sensors.fix_std_m**2 + sensors.fix_bias_std_m**2) * np.eye(3)
     for i in range(int(truth.length_s * sensors.rate_hz)):
         t = i * dt
@@ -202,8 +204,8 @@ def _vehicle_sensors(
             (Quantity.VELOCITY, velocity + sensors.velocity_std_m_s * noise[3:6], sensors.velocity_std_m_s),
             (
                 Quantity.HEADING,
-                np.array([math.remainder(yaw + sensors.heading_std_rad * noise[6], math.tau)]),
-                sensors.heading_std_rad,
+                np.array([math.remainder(yaw + heading_bias_rad + sensors.heading_std_rad * noise[6], math.tau)]),
+                math.hypot(sensors.heading_std_rad, heading_bias_rad),
             ),
             (
                 Quantity.YAW_RATE,

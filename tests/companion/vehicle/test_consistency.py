@@ -55,6 +55,7 @@ NOISE = noises_with(
     IMM.numbers,
     (0.0, 0.0, 0.0),
     (MODE.jerk_psd_m2_s5, MODE.lateral_acceleration_psd_m2_s5),
+    0.0,
     turn_is_measured=False,
 )[0]
 """Of the steady model, by the filter's own table: a kernel that is given too short a one reads what lies behind it."""

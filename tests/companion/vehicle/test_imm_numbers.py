@@ -30,11 +30,13 @@ def test_each_model_differs_from_steady_driving_in_what_it_is_for() -> None:
 
 def test_what_is_learnt_of_steady_driving_holds_for_each_model_but_for_its_own_manoeuvre() -> None:
     numbers = numbers_of(ImmConfig(), Deck())
-    noises = noises_with(numbers, (0.0, 0.0, 0.0), (0.217, 0.219), turn_is_measured=False)
+    noises = noises_with(numbers, (0.0, 0.0, 0.0), (0.217, 0.219), 0.0, turn_is_measured=False)
     assert [JERK not in own for own in [set[int](), *OWN]] == (noises[:, JERK] == 0.217).tolist()
     assert [LATERAL not in own for own in [set[int](), *OWN]] == (noises[:, LATERAL] == 0.219).tolist()
     kept = np.delete(np.arange(noises.shape[1]), [JERK, LATERAL])
-    assert (noises[:, kept] == noises_with(numbers, (0.0, 0.0, 0.0), (1.0, 1.0), turn_is_measured=False)[:, kept]).all()
+    assert (
+        noises[:, kept] == noises_with(numbers, (0.0, 0.0, 0.0), (1.0, 1.0), 0.0, turn_is_measured=False)[:, kept]
+    ).all()
 
 
 def test_steady_driver_who_is_configured_as_wild_as_a_manoeuvre_stays_so() -> None:
