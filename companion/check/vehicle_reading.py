@@ -6,6 +6,8 @@ import statistics
 
 from companion.check.observation import VehicleFacts
 from companion.config.integrity import IntegrityConfig
+from companion.core.data import Quantity
+from companion.vehicle.inputs import imu_measurements
 from link.frames.rotations import yaw_of
 from link.messages import Fix, FixVelocity, VehicleImu
 from link.payloads import cdr
@@ -75,7 +77,7 @@ class VehicleReader:
             message = cdr.decode(VehicleImu, payload)
         except PayloadError:
             return
-        self._tells_acceleration |= message.specific_force_flu_m_s2 is not None
+        self._tells_acceleration |= any(one.quantity is Quantity.ACCELERATION for one in imu_measurements(message))
         if message.orientation_wxyz is not None:
             self._heading = (message.t_ns, yaw_of(message.orientation_wxyz))
 

@@ -8,13 +8,13 @@ from companion.vehicle.body_sway import BodySway, first_sway, learn_sway, sway_o
 from companion.vehicle.deck_motion import DeckMotion, first_motion, learn
 from companion.vehicle.imm_mixing import Modes
 from companion.vehicle.imm_numbers import Numbers, swing_of
-from companion.vehicle.imm_state import DECK, PLACE, TILT, ImmState, has_settled, open_states
+from companion.vehicle.imm_state import DECK, PLACE, TILT, ImmState, has_settled
 from companion.vehicle.imm_swing import HEAVE_RATE, ROLL, ROLL_RATE, SIZE, UNIT_HEADING, antenna_swing
 from link.records import replace
 
 MOTIONS = frozenset({Quantity.POSITION, Quantity.VELOCITY})
 SWINGING = np.array([HEAVE_RATE, HEAVE_RATE + 1, *TILT])
-_UNIT = np.array([UNIT_HEADING])
+_OTHER_UNIT = 2.0  # times the standard deviation: what a unit states scatters, too
 _RATE = np.array([2, 3, HEAVE_RATE])  # what the velocity of the antenna has beside its swing
 
 
@@ -90,17 +90,21 @@ def opened_unit(state: ImmState, heading: Measurement) -> ImmState:
     """Return the state before a heading is fused.
 
     What a unit states says how far its compass or its antennas may be turned, which lasts, and how much it scatters. It
-    does not say how much it is of each, so it is taken for both.
+    does not say how much it is of each, so it is taken for both. A unit that comes to state twice as much, or half,
+    goes by other sensors than before, and what was learnt of its error is of no use.
 
     Args:
         state: so far.
         heading: that a unit tells.
     """
     stated_rad2, before_rad2 = float(heading.covariance[0, 0]), state.heading_bias_variance_rad2
-    modes = state.modes
-    if stated_rad2 > before_rad2:
-        modes = open_states(modes, _UNIT, np.array([stated_rad2 - before_rad2]))
-    return replace(state, modes=modes, heading_bias_variance_rad2=stated_rad2)
+    if before_rad2 / _OTHER_UNIT**2 < stated_rad2 < before_rad2 * _OTHER_UNIT**2:
+        return state
+    means, covariances, weights = state.modes
+    means, covariances = means.copy(), covariances.copy()
+    means[:, UNIT_HEADING] = covariances[:, UNIT_HEADING, :] = covariances[:, :, UNIT_HEADING] = 0.0
+    covariances[:, UNIT_HEADING, UNIT_HEADING] = stated_rad2
+    return replace(state, modes=(means, covariances, weights), heading_bias_variance_rad2=stated_rad2)
 
 
 def upright_modes(state: ImmState) -> Modes:

@@ -63,7 +63,7 @@ def test_course_begins_at_the_speed_that_the_configuration_says() -> None:
     assert _after_a_drive(0.3, 1.0, 6.0, config=later).facts(NOT_ASKED).heading_off_rad is not None
 
 
-@pytest.mark.parametrize(("force", "is_told"), [((0.1, 0.0, 9.8), True), (None, False)])
+@pytest.mark.parametrize(("force", "is_told"), [((0.1, 0.0, 9.8), True), ((0.0, 0.0, 0.0), False), (None, False)])
 def test_acceleration_is_told_by_a_unit_that_measures_one(force: Vector3 | None, *, is_told: bool) -> None:
     reader = VehicleReader("decklander/vehicle/fix", CONFIG)
     reader.imu(cdr.encode(VehicleImu(t_ns=START_NS, specific_force_flu_m_s2=force)))

@@ -88,7 +88,7 @@ def prepared():
 flight = Lockstep(draw(load_cell(sys.argv[1]), 3).scenario, 3)
 flight.step()
 before = prepared()
-end = flight.run()
+flight.run()
 for module, name, _ in sorted(prepared() - before):
     print(module, name)
 """
