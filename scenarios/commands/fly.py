@@ -63,7 +63,7 @@ def fly_command(
         sortie=sortie,
         record=not no_record,
     )
-    with Reporter(scenario, folder, as_json=as_json) as reporter:
+    with Reporter(scenario, folder, as_json=as_json, flies="the autopilot that answers") as reporter:
         outcome = fly(scenario, options, reporter.progress)
     code = reporter.conclude(outcome)
     return 1 if sortie and outcome.result["sortie"]["contacts"] else code

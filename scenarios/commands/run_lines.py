@@ -63,10 +63,12 @@ class Reporter:
         scenario: what is flown.
         folder: of the run.
         as_json: show nothing but the result, as JSON.
+        flies: the firmware, or what else is flown; the scenario's own where it is not said.
     """
 
-    def __init__(self, scenario: Scenario, folder: Path, *, as_json: bool) -> None:
+    def __init__(self, scenario: Scenario, folder: Path, *, as_json: bool, flies: str | None = None) -> None:
         self._scenario = scenario
+        self._flies = scenario.firmware if flies is None else flies
         self._folder = folder
         self._as_json = as_json
         self._screen = Screen(f"{scenario.name} in {folder}") if sys.stdout.isatty() and not as_json else None
@@ -75,7 +77,7 @@ class Reporter:
 
     def __enter__(self) -> Self:
         if not self._as_json:
-            sys.stdout.write(f"{self._scenario.name}, {self._scenario.firmware}: {self._scenario.description}\n")
+            sys.stdout.write(f"{self._scenario.name}, {self._flies}: {self._scenario.description}\n")
         if self._screen is not None:
             self._screen.start()
         return self
