@@ -115,7 +115,8 @@ class ResponseModel:
 
     Attributes:
         cascade: as given.
-        covariance: (4, 4) of the estimated state, stationary.
+        covariance: (4, 4) of the estimated state, stationary, in gusts of `PUSH_STD_M_S2`, which its gain is made for.
+        report_covariance: (4, 4) the part of it that the reports' errors make.
         spread: (4, 4) of the state of a drone that follows as the model says, stationary.
     """
 
@@ -141,6 +142,8 @@ class ResponseModel:
         self._told: Array = np.asarray(np.linalg.inv(self.spread[:2, :2]), dtype=np.float64)
         self._gain = self.covariance @ seen.T @ np.linalg.inv(report)
         self._corrected = self._motion - self._gain @ seen
+        heard = self._gain @ report @ self._gain.T
+        self.report_covariance: Array = np.asarray(solve_continuous_lyapunov(self._corrected, -heard), dtype=np.float64)
         self._free, self._forced = _responses(self._motion, self._asked, offset_s)
 
     def update(self, state: Array, measured: Array, acceleration_m_s2: Array, dt_s: float) -> Array:
@@ -154,6 +157,14 @@ class ResponseModel:
         """
         driven = self._gain @ measured + np.outer(self._asked, acceleration_m_s2)
         return _move(self._corrected, state, driven, dt_s)
+
+    def covariance_in(self, push_std_m_s2: float) -> Array:
+        """Return the covariance (4, 4) of the estimated state in gusts of that strength, stationary.
+
+        The gain is fixed, so the estimate's error is the sum of what the gusts make of it and what the reports do.
+        """
+        of_gusts = self.covariance - self.report_covariance
+        return np.asarray(self.report_covariance + (push_std_m_s2 / PUSH_STD_M_S2) ** 2 * of_gusts)
 
     def chi2(self, state: Array) -> Array:
         """Return how unlikely place and velocity of a state (4, k) are of a drone that follows in gusts, (k,)."""

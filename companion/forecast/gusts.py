@@ -24,7 +24,8 @@ _PRIOR_S = 1.0  # as long as the estimate of a push needs to forget how it began
 _FORGETS_S = 20.0  # a gust lasts some seconds, a landing ten or twenty
 _BREAK_S = 0.25
 _COMPARED_S = 1.0  # after which a push is compared with what was expected: ten times the drone's lag
-_EXPECTED_STD_M_S2 = 1.5 * DRAG_PER_S  # light turbulence of MIL-F-8785C: 1.5 m/s near the ground, in 15 knots of wind
+_MATTERS_STD_M_S2 = 1.5 * DRAG_PER_S  # light turbulence of MIL-F-8785C: 1.5 m/s near the ground, in 15 knots of wind
+_EXPECTED_STD_M_S2 = 0.8 * DRAG_PER_S  # turbulence of MIL-F-8785C at 5 m in a gentle breeze: a fifth of 4 m/s
 _SETTLES_S = 0.4  # the longest time constant of the estimate of a push: earlier jerk is forgotten
 
 
@@ -113,7 +114,7 @@ def _doubt_m2_s4(changed_m_s2: Array) -> Array:
 
 def _told(square_m2_s4: Array, doubt_m2_s4: Array, share: float) -> tuple[float, float]:
     """Return the mean square of a gust's push that a second shows, by its weight, and the weight, 0 to 1."""
-    expected = share * _EXPECTED_STD_M_S2**2
-    trust = np.square(expected / (expected + doubt_m2_s4))
+    matters_m2_s4 = share * _MATTERS_STD_M_S2**2
+    trust = np.square(matters_m2_s4 / (matters_m2_s4 + doubt_m2_s4))
     gust_m2_s4 = np.maximum(square_m2_s4 - doubt_m2_s4, 0.0) / share
     return float(np.mean(trust * gust_m2_s4)), float(np.mean(trust))

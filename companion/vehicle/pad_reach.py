@@ -16,6 +16,7 @@ from companion.vehicle.pad import KNOWN_SHARE, PadPath
 
 _CONE_SHARE = 0.4  # of half of the pad's width: 0.3 m on a pad of 1.5 m
 _CONTACT_SHARE = 0.8  # 0.6 m
+_ONE_FRAME_STD_M = 0.1  # along an axis, of receivers with corrections: the best of `scenarios/worlds/odd.toml`
 _STDS = 2.0  # of both places, that the feet have room for
 
 
@@ -47,10 +48,12 @@ def unseen_std_max_m(half_width_m: float, config: CompanionConfig) -> float:
 def frames_apart_m2(pad: PadPath) -> Array:
     """Return the part (3,) of the pad's variance that doubts frames which count as one; 0 where they do not.
 
-    If they are not one, that is a wrong model and no bad luck: nothing that weighs luck counts with it.
+    If they are not one, that is a wrong model and no bad luck: nothing that weighs luck counts with it. What frames are
+    apart that are one is luck, until sightings tell it.
     """
     std_m, is_height_told = pad.frame_offset.std_m, pad.frame_offset.is_height_told
-    variance = std_m**2 if pad.has_one_frame and math.isfinite(std_m) else 0.0
+    as_one_m = 0.0 if pad.frame_offset.is_confirmed else _ONE_FRAME_STD_M
+    variance = max(std_m**2 - as_one_m**2, 0.0) if pad.has_one_frame and math.isfinite(std_m) else 0.0
     return np.array([variance, variance, 0.0 if is_height_told else variance])
 
 

@@ -107,7 +107,8 @@ def forecast_contact(
     course = course_of(memory, relative, pad, way_down, deviation)
     numbers = draws()
     stands = vehicle_stands(situation, config.chase)
-    errors = draw_errors(then, pad, inputs.response, numbers)
+    deviates = inputs.response.covariance_in(memory.forecast.gusts.push_std_m_s2)
+    errors = draw_errors(then, pad, deviates, numbers)
     deck = draw_deck(pad, way_down.contact_s, numbers.tilts)
     late_s = memory.vehicle.hindsight.lateness_s or age_s
     jitter_s = inputs.link_delay.std_s * errors.late

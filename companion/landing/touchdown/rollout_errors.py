@@ -5,7 +5,7 @@ import math
 import numpy as np
 from msgspec import Struct
 
-from companion.autopilots.response import STATES, ResponseModel
+from companion.autopilots.response import STATES
 from companion.core.data import Array, Mixture, VehicleEstimate
 from companion.forecast.draws import MODE, Draws
 from companion.vehicle.hindsight import Driving
@@ -16,7 +16,7 @@ _PLACE_STD_MIN_M = 0.02  # of a receiver with corrections
 _CHANGE_S = 0.1  # between two changes of speed that `Driving` keeps
 _PRIOR_DRIVEN_S = 2.0  # what the estimator believes of drivers counts as one such change, which is over 2 s
 _OWN_HEIGHT_STD_M = 0.05  # of the drone's height beside the vehicle's: receivers with corrections, or a range finder
-_OWN_CLIMB_STD_M_S = 0.1  # of its rate, gusts included
+_OWN_CLIMB_STD_M_S = 0.07  # of its rate, gusts included: 240 contacts in worlds sank by 0.06 m/s other than forecast
 # What a deck's velocity turns out to be sooner than this before the contact the drone makes up for: setpoints and data
 # are late by 0.15 s, and half of the vertical acceleration is there after another 0.15 s.
 _CLIMB_FOLLOWED_S = 0.5
@@ -38,13 +38,13 @@ class Errors(Struct, frozen=True, kw_only=True, eq=False):
     late: Array
 
 
-def draw_errors(then: VehicleEstimate, pad: PadPath, response: ResponseModel, numbers: Draws) -> Errors:
+def draw_errors(then: VehicleEstimate, pad: PadPath, deviates: Array, numbers: Draws) -> Errors:
     """Return what may be wrong.
 
     Args:
         then: the vehicle at its newest datum.
         pad: now; where its place is known less well than the antenna's, that is the heading's.
-        response: of the autopilot.
+        deviates: (4, 4) covariance of how the drone deviates from its path.
         numbers: random ones.
     """
     normals = numbers.normals
@@ -53,7 +53,7 @@ def draw_errors(then: VehicleEstimate, pad: PadPath, response: ResponseModel, nu
     own = normals[:, 17:19] * np.array([_OWN_HEIGHT_STD_M, math.hypot(_OWN_CLIMB_STD_M_S, heaves_m_s)])
     return Errors(
         vehicle=np.ascontiguousarray(vehicle.reshape(-1, 3, 3)[:, :, :2]),
-        deviation=np.einsum("ij,njk->nik", _root(response.covariance), normals[:, 9:17].reshape(-1, STATES, 2)),
+        deviation=np.einsum("ij,njk->nik", _root(deviates), normals[:, 9:17].reshape(-1, STATES, 2)),
         vertical=own - np.column_stack([vehicle[:, 2], -vehicle[:, 5]]),
         late=normals[:, 19],
     )

@@ -69,14 +69,16 @@ def test_a_constant_push_is_unlearnt(model: ResponseModel) -> None:
     assert np.abs(far).max() < 0.02
 
 
-def drone(model: ResponseModel, seed: int, duration_s: float) -> tuple[Array, Array]:
-    """A drone that the model describes, and its reports: states (n, 4) and (n, 2), at the reports' rate."""
+def drone(
+    model: ResponseModel, seed: int, duration_s: float, push_std_m_s2: float = PUSH_STD_M_S2
+) -> tuple[Array, Array]:
+    """A drone that the model describes, in such gusts, and its reports: states (n, 4) and (n, 2), at their rate."""
     random, dt_s = np.random.default_rng(seed), REPORT_PERIOD_S
     forgets_hz = model.cascade.integral_per_s2 / model.cascade.velocity_per_s
     state, states, reports = np.zeros((STATES, 1)), [], []
     for _ in range(round(duration_s / dt_s)):
         state = model.carry(state, dt_s)
-        state[3] += random.normal() * PUSH_STD_M_S2 * np.sqrt(2.0 * forgets_hz * dt_s)
+        state[3] += random.normal() * push_std_m_s2 * np.sqrt(2.0 * forgets_hz * dt_s)
         states.append(state[:, 0].copy())
         reports.append(state[:2, 0] + random.normal(size=2) * (POSITION_STD_M, VELOCITY_STD_M_S))
     return np.array(states), np.array(reports)
@@ -92,11 +94,17 @@ def estimated(model: ResponseModel, reports: Array) -> Array:
 
 
 @pytest.mark.slow
-def test_estimate_errs_by_its_covariance(model: ResponseModel) -> None:
-    truth, reports = drone(model, 1, 200.0)
+@pytest.mark.parametrize("push_std_m_s2", [0.0, 0.2, PUSH_STD_M_S2, 1.5])
+def test_estimate_errs_by_its_covariance_in_any_gusts(model: ResponseModel, push_std_m_s2: float) -> None:
+    truth, reports = drone(model, 1, 200.0, push_std_m_s2)
     error = (estimated(model, reports) - truth)[500:]
-    ratio = error.std(axis=0) / np.sqrt(np.diag(model.covariance))
+    ratio = error.std(axis=0) / np.sqrt(np.diag(model.covariance_in(push_std_m_s2)))
     assert ratio == pytest.approx(np.ones(STATES), abs=0.2)
+
+
+def test_gain_is_made_for_the_gusts_of_its_covariance(model: ResponseModel) -> None:
+    assert np.allclose(model.covariance_in(PUSH_STD_M_S2), model.covariance)
+    assert np.all(np.linalg.eigvalsh(model.report_covariance) >= -1e-9)
 
 
 @pytest.mark.slow

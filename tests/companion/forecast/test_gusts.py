@@ -64,7 +64,7 @@ def test_push_that_is_estimated_anew_is_no_gust() -> None:
 
 
 def test_reports_without_noise_of_a_drone_that_nothing_pushes_show_no_gusts() -> None:
-    assert Gusts().push_std_m_s2 == pytest.approx(0.5 * PUSH_STD_M_S2)  # light turbulence, half of moderate
+    assert Gusts().push_std_m_s2 == pytest.approx(0.8 * DRAG_PER_S)  # a gentle breeze
     assert pushed(0.0, 0.0, 1).push_std_m_s2 < 0.3 * PUSH_STD_M_S2
 
 

@@ -4,10 +4,12 @@ import numpy as np
 import pytest
 from scipy.linalg import solve_continuous_are
 
-from companion.autopilots.response import ResponseModel
+from companion.autopilots.response import STATES, ResponseModel
 from companion.core.data import Array, Mixture, VehicleEstimate
 from companion.forecast.draws import draws
 from companion.landing.touchdown.rollout_errors import draw_errors, relearns_hz
+from companion.vehicle.pad import FrameOffset
+from link.records import replace
 from tests.companion.autopilots.test_response import CASCADES, OFFSET_S
 from tests.companion.facts import pad_at
 
@@ -32,7 +34,7 @@ def _drawn(mixture: Mixture | None, covariance: Array, pad_std_m: float = 0.01) 
     """Places, velocities and accelerations of the samples, (n, 3, 2)."""
     then = _estimate(covariance, mixture)
     response = ResponseModel(next(iter(CASCADES.values())), OFFSET_S)
-    return draw_errors(then, pad_at(std_m=pad_std_m), response, draws()).vehicle
+    return draw_errors(then, pad_at(std_m=pad_std_m), response.covariance, draws()).vehicle
 
 
 def test_model_that_is_hardly_likely_moves_few_samples_and_leaves_the_others_alone() -> None:
@@ -78,3 +80,14 @@ def test_error_of_the_velocity_is_learnt_anew_as_fast_as_a_steady_filters_errors
 
 def test_velocity_whose_error_has_nothing_to_do_with_the_accelerations_keeps_it() -> None:
     assert relearns_hz(_estimate(CALM)) == 0.0
+
+
+@pytest.mark.parametrize(("is_confirmed", "std_m"), [(False, 0.1), (True, 0.02)])
+def test_frames_that_are_one_are_apart_by_what_receivers_differ_until_sightings_tell(
+    *, is_confirmed: bool, std_m: float
+) -> None:
+    covariance, apart_m = CALM.copy(), 0.5
+    covariance[:2, :2] = np.eye(2) * apart_m**2
+    pad = replace(pad_at(), frame_offset=FrameOffset(std_m=apart_m, is_confirmed=is_confirmed))
+    place = draw_errors(_estimate(covariance), pad, np.zeros((STATES, STATES)), draws()).vehicle[:, 0]
+    assert place.std(axis=0) == pytest.approx(np.full(2, std_m), rel=0.15)
