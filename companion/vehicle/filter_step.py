@@ -39,6 +39,11 @@ def wrapped(angle_rad: float) -> float:
     return (angle_rad + math.pi) % (2.0 * math.pi) - math.pi
 
 
+def std_of(variance: float) -> float:
+    """Return the standard deviation, NaN where data that contradict each other have left no variance."""
+    return math.sqrt(variance) if variance >= 0.0 else math.nan
+
+
 S = TypeVar("S")
 
 QUANTITIES = tuple(Quantity)

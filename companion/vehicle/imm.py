@@ -22,7 +22,7 @@ from companion.vehicle import imm_judgement as judgement
 from companion.vehicle import imm_mixing as mixing
 from companion.vehicle import steady_driving
 from companion.vehicle.deck_motion import passed
-from companion.vehicle.filter_step import Update, wrapped
+from companion.vehicle.filter_step import Update, std_of, wrapped
 from companion.vehicle.imm_body import (
     MOTIONS,
     learnt_body,
@@ -36,6 +36,7 @@ from companion.vehicle.imm_frames import moved_frame, own_rate_opened_m2_s2, ran
 from companion.vehicle.imm_kernels import CURVATURE, HEADING
 from companion.vehicle.imm_mixing import Modes
 from companion.vehicle.imm_numbers import Deck, Numbers, noises_with, numbers_of, turns_as_modelled
+from companion.vehicle.imm_spin import spins, spun, without_spin
 from companion.vehicle.imm_state import (
     KINDS,
     OFFSET,
@@ -83,6 +84,7 @@ class ImmModel:
 
     def predict(self, state: ImmState, dt_s: float) -> ImmState:
         """Return the state `dt_s` later."""
+        state = spun(state, dt_s, self.numbers.lever_m) if state.spin_rad_s else state
         noises, begins_after_s, motion = self._noises(state), self.numbers.begins_after_s, self._motion(state)
         modes = mixing.predict_modes(state.modes, dt_s, noises, begins_after_s, motion, self._known_variance)
         return replace(
@@ -121,7 +123,11 @@ class ImmModel:
             white_variance = largest(R)
         if measurement.quantity is Quantity.HEADING:
             state = opened_unit(state, measurement)
-        reading = (KINDS[measurement.quantity], _own(measurement.value), _own(R))
+        slow_m_s = self.config.heading.course_speed_min_m_s
+        state, left = without_spin(state, measurement, self.numbers.lever_m, slow_m_s)
+        if left is None:
+            return Update(state=state, nis=1.0, gate_nis=1.0, dof=1)
+        reading = (KINDS[measurement.quantity], _own(left.value), _own(R))
         tells_motion = measurement.quantity in MOTIONS
         tells_driving = tells_motion or measurement.quantity is self.placed_by
         modes = self._after_silence(state) if tells_motion and state.unmeasured_s > 0.0 else state.modes
@@ -129,7 +135,8 @@ class ImmModel:
         modes, nis, gate_nis = judgement.take_reading(modes, reading, self.numbers.lever_m, course)
         tells_turn = measurement.quantity in TURNS and self.placed_by is Quantity.POSITION
         deck, sway = learnt_body(state, modes, measurement, self.config, self.numbers, is_afloat=is_afloat)
-        updated = ImmState(
+        updated = replace(
+            state,
             modes=modes,
             driving=steady_driving.learn(state.driving, modes, self.config) if tells_driving else state.driving,
             fix_bias_variance_m2=bias_variance,
@@ -137,7 +144,6 @@ class ImmModel:
             seen_age_s=0.0 if measurement.quantity is Quantity.PAD else state.seen_age_s,
             height_age_s=0.0 if measurement.quantity in HEIGHTS else state.height_age_s,
             turn_age_s=0.0 if tells_turn else state.turn_age_s,  # what is only seen to turn is taken for a car
-            heading_bias_variance_rad2=state.heading_bias_variance_rad2,
             unmeasured_s=0.0 if tells_motion else state.unmeasured_s,
             deck=deck,
             sway=sway,
@@ -185,7 +191,7 @@ class ImmModel:
             position_enu_m=position,
             velocity_enu_m_s=velocity,
             acceleration_enu_m_s2=acceleration,
-            yaw_rad=yaw if heading_variance < self._known_variance and is_as_modelled else None,
+            yaw_rad=yaw if heading_variance < self._known_variance and is_as_modelled and not spins(state) else None,
             position_std_m=std[:, :3],
             climb_std_m_s=std[:, 3],
             is_coarse=state.fix_bias_variance_m2 > 0.0 or self.placed_by is Quantity.PAD,
@@ -193,9 +199,9 @@ class ImmModel:
             tilt_rad=None if state.deck is None else tilt,
             tilt_std_rad=None if state.deck is None else std[:, 4:],
             swing=None if state.deck is None else state.deck.oscillators.reshape(3, 3)[:, :2],
-            yaw_std_rad=math.sqrt(heading_variance),
+            yaw_std_rad=std_of(heading_variance),
             frame_offset_enu_m=(weights @ means)[OFFSET[:2]],
-            frame_offset_std_m=math.sqrt(float((weights @ covariances[:, OFFSET[:2], OFFSET[:2]]).max())),
+            frame_offset_std_m=std_of(float((weights @ covariances[:, OFFSET[:2], OFFSET[:2]]).max())),
             is_height_told=state.height_age_s < self.config.receivers.own_height_time_s,
         )
 

@@ -77,7 +77,7 @@ def ranged_pad(
     return pad_height_seen(
         surface,
         pad,
-        pad_std_m=math.sqrt(horizontal_variance_m2(H[:2], weights, covariances, apart_m2)),
+        pad_std_m=math.sqrt(max(horizontal_variance_m2(H[:2], weights, covariances, apart_m2), 0.0)),  # rounding
         slope_enu=(c * forward - s * left, s * forward + c * left),
         half_width_m=deck.half_width_m,
         above_road_m=deck.pad_height_m,

@@ -84,6 +84,8 @@ class ImmState(Struct, frozen=True, kw_only=True, eq=False):
         height_age_s: how long ago that or a range told how high it is for the drone; infinite before.
         turn_age_s: how long ago a sensor told the heading or the yaw rate.
         heading_bias_variance_rad2: of what a unit tells of the heading too much for long; 0 until it tells one.
+        spin_rad_s: how fast the vehicle turns on the spot.
+        spin_left_s: for how long it goes on without another yaw rate.
         unmeasured_s: how long ago place or velocity was told.
         deck: how the deck swings; None until the vehicle has told its tilt.
         sway: how its body sways that does not tell its tilt; None until the vehicle is known well enough, and then.
@@ -97,6 +99,8 @@ class ImmState(Struct, frozen=True, kw_only=True, eq=False):
     height_age_s: float = math.inf
     turn_age_s: float = math.inf
     heading_bias_variance_rad2: float = 0.0
+    spin_rad_s: float = 0.0
+    spin_left_s: float = 0.0
     unmeasured_s: float = 0.0
     deck: DeckMotion | None = None
     sway: BodySway | None = None

@@ -200,4 +200,6 @@ def _are_frames_one(vehicle: VehicleMemory, inputs: StepInputs, system: System) 
 
 def _is_finite(forecast: Forecast) -> bool:
     path = (forecast.position_enu_m, forecast.velocity_enu_m_s, forecast.acceleration_enu_m_s2)
+    if math.isnan(forecast.yaw_std_rad) or math.isnan(forecast.frame_offset_std_m):
+        return False
     return are_finite(*path, forecast.position_std_m, *(() if forecast.yaw_rad is None else (forecast.yaw_rad,)))

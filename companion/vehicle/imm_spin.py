@@ -1,0 +1,98 @@
+"""A vehicle that turns on the spot, as its gyro tells.
+
+The model turns by curvature and speed, as a car does: one that stands cannot turn. Tracked and differentially driven
+vehicles do. While a vehicle is slow, a yaw rate that its curve and its sensor's noise do not explain is no curvature,
+which would become absurd, and moves the heading by itself. Left out, the turn that a told heading shows would be taken
+for an error of the unit.
+"""
+
+import math
+
+import numpy as np
+
+from companion.core.data import Array, Measurement, Quantity
+from companion.vehicle import imm_mixing as mixing
+from companion.vehicle.imm_kernels import HEADING
+from companion.vehicle.imm_sensors import YAW_RATE, observe
+from companion.vehicle.imm_state import ImmState
+from companion.vehicle.imm_swing import SIZE
+from link.records import replace
+
+_STDS = 5.0  # beyond what is expected: noise alone does it once in a million readings
+_HOLDS_S = 0.5  # without another reading: several periods of the slowest gyro
+_ERRS_SHARE = 0.2  # of the rate, for a second: it changes between readings, and is told late
+_SPINS_RAD_S = 0.2  # a pad 2.5 m beside the centre is then beyond the S2 speed; cars that depart turn more slowly
+_NO_LEVER = np.zeros(4)
+
+
+def without_spin(
+    state: ImmState, measurement: Measurement, lever_m: Array, slow_m_s: float
+) -> tuple[ImmState, Measurement | None]:
+    """Return the state with how fast the vehicle turns on the spot, and what the measurement tells beside that.
+
+    That is a velocity of an antenna that does not swing round, and nothing where a yaw rate told the turn.
+
+    Args:
+        state: predicted to the measurement.
+        measurement: of any quantity.
+        lever_m: (4,) from the antenna to the pad in V, as `observe` takes it.
+        slow_m_s: up to which speed a vehicle may turn on the spot.
+    """
+    if measurement.quantity is Quantity.YAW_RATE:
+        spin_rad_s = _spin_told(state, measurement, slow_m_s)
+        if spin_rad_s == 0.0 == state.spin_rad_s:
+            return state, measurement
+        state = replace(state, spin_rad_s=spin_rad_s, spin_left_s=_HOLDS_S, turn_age_s=0.0)
+        return state, None if spin_rad_s else measurement
+    if measurement.quantity is not Quantity.VELOCITY or state.spin_rad_s == 0.0:
+        return state, measurement
+    means, _, weights = state.modes
+    east_m, north_m = _turned(float(weights @ means[:, HEADING]), lever_m)
+    value = measurement.value + state.spin_rad_s * np.array([-north_m, east_m, 0.0])
+    return state, replace(measurement, value=value)
+
+
+def spun(state: ImmState, dt_s: float, lever_m: Array) -> ImmState:
+    """Return the state whose heading has turned on the spot for `dt_s`, about the pad's centre as in every turn.
+
+    Args:
+        state: before.
+        dt_s: so long ago.
+        lever_m: as `without_spin` takes it.
+    """
+    means, covariances, weights = state.modes
+    turns_s, moved, opened = min(dt_s, state.spin_left_s), means.copy(), np.empty_like(covariances)
+    moved[:, HEADING] += state.spin_rad_s * turns_s
+    for mode, (before, after) in enumerate(zip(means, moved, strict=True)):
+        swung_m = _turned(before[HEADING], lever_m) - _turned(after[HEADING], lever_m)
+        after[:2] += swung_m
+        F = np.eye(SIZE)
+        F[:2, HEADING] = -swung_m[1], swung_m[0]
+        opened[mode] = F @ covariances[mode] @ F.T
+    opened[:, HEADING, HEADING] += (_ERRS_SHARE * state.spin_rad_s) ** 2 * turns_s
+    left_s = state.spin_left_s - turns_s
+    spin_rad_s = state.spin_rad_s if left_s > 0.0 else 0.0
+    return replace(state, modes=(moved, opened, weights), spin_rad_s=spin_rad_s, spin_left_s=left_s)
+
+
+def spins(state: ImmState) -> bool:
+    """Return whether the vehicle turns too fast on the spot for a forecast, which has it stand."""
+    return abs(state.spin_rad_s) > _SPINS_RAD_S
+
+
+def _spin_told(state: ImmState, yaw_rate: Measurement, slow_m_s: float) -> float:
+    means, covariances, weights = state.modes
+    east_m_s, north_m_s = (weights @ means[:, 2:4]).tolist()
+    if math.hypot(east_m_s, north_m_s) > slow_m_s:
+        return 0.0
+    x, P = mixing.combine(means, covariances, weights)
+    expected, H = observe(YAW_RATE, x, _NO_LEVER, True)
+    off_rad_s = float(yaw_rate.value[0] - expected[0])
+    variance = float((H @ P @ H.T)[0, 0] + yaw_rate.covariance[0, 0])
+    return off_rad_s if off_rad_s**2 > _STDS**2 * max(variance, 0.0) else 0.0
+
+
+def _turned(heading_rad: float, lever_m: Array) -> Array:
+    """Return the lever's horizontal part (2,) in W."""
+    c, s = math.cos(heading_rad), math.sin(heading_rad)
+    return np.array([c * lever_m[0] - s * lever_m[1], s * lever_m[0] + c * lever_m[1]])

@@ -1,0 +1,112 @@
+"""A vehicle that turns on the spot: its heading follows its gyro, and no reading ends the filter."""
+
+import math
+
+import numpy as np
+import pytest
+
+from companion.config.estimation import EstimatorKind, ImmConfig
+from companion.core.data import Measurement, Quantity
+from companion.vehicle.estimator import EstimatorMemory
+from companion.vehicle.filter_step import std_of
+from companion.vehicle.imm import ImmModel
+from companion.vehicle.imm_state import ImmState
+from link.frames.rotations import wrap_angle
+from link.records import replace
+from tests.companion.vehicle.drives import NOMINAL, Drive, Sensors, drive
+from tests.companion.vehicle.rides import estimator, now_ns, ride
+from tests.companion.vehicle.test_standing import turning_on_the_spot
+
+IMM = EstimatorKind.IMM
+TURNS_S, TURNED_S, DONE_S = 5.0, 11.0, 15.0
+TOLD = replace(NOMINAL, heading_std_rad=0.03)
+GYRO_ALONE = replace(NOMINAL, heading_std_rad=0.0)
+
+
+def yaw_error(truth: Drive, sensors: Sensors, seed: int) -> tuple[float, float]:
+    """How far off the heading is after the turn, and what it is said to be, rad."""
+    chosen = estimator(IMM)
+    done = ride(chosen, truth, sensors, seed, from_s=DONE_S - 0.1, until_s=DONE_S)
+    forecast = chosen.forecast(done.memory, now_ns(DONE_S), np.array([0.0]))
+    assert forecast is not None
+    assert forecast.yaw_rad is not None
+    return wrap_angle(float(forecast.yaw_rad[0]) - truth.at(DONE_S)[2]), forecast.yaw_std_rad
+
+
+def test_told_heading_is_as_good_after_a_turn_on_the_spot_as_is_said() -> None:
+    found = np.array([yaw_error(turning_on_the_spot(), TOLD, seed) for seed in range(8)])
+    assert np.abs(found[:, 0]).max() < 0.05
+    assert np.mean((found[:, 0] / found[:, 1]) ** 2) < 3.0
+
+
+def test_gyro_carries_a_heading_that_was_learnt_through_a_turn_on_the_spot() -> None:
+    """Half a turn after a drive, by which the heading is known."""
+    turns = drive(
+        DONE_S + 1.0,
+        lambda t: min(max(5.0 - 3.0 * (t - 2.0), 1e-6), 5.0),
+        lambda t: 0.5e6 if TURNS_S < t < TURNED_S else 0.0,
+    )
+    found = np.array([yaw_error(turns, GYRO_ALONE, seed) for seed in range(4)])
+    assert np.abs(found[:, 0]).max() < 0.3  # of 3 rad
+    assert np.mean((found[:, 0] / found[:, 1]) ** 2) < 3.0
+
+
+@pytest.mark.parametrize(("t_s", "is_known"), [(4.9, True), (8.0, False), (13.0, True)])
+def test_there_is_no_heading_to_land_by_while_the_vehicle_turns(t_s: float, *, is_known: bool) -> None:
+    chosen = estimator(IMM)
+    done = ride(chosen, turning_on_the_spot(), TOLD, 0, from_s=t_s - 0.1, until_s=t_s)
+    forecast = chosen.forecast(done.memory, now_ns(t_s), np.array([0.0]))
+    assert forecast is not None
+    assert (forecast.yaw_rad is not None) is is_known
+
+
+def test_car_that_departs_in_a_bend_does_not_turn_on_the_spot() -> None:
+    chosen = estimator(IMM)
+    departs = drive(16.0, lambda t: max(2.0 * (t - 8.0), 0.0), lambda t: 0.1 if t > 8.0 else 0.0)
+    for t_s in np.arange(8.0, 11.0, 0.2):
+        done = ride(chosen, departs, TOLD, 0, from_s=t_s - 0.1, until_s=t_s)
+        forecast = chosen.forecast(done.memory, now_ns(t_s), np.array([0.0]))
+        assert forecast is not None
+        assert forecast.yaw_rad is not None
+
+
+@pytest.mark.parametrize("rate_rad_s", [0.5, 2.0, 6.0])
+@pytest.mark.parametrize("std_rad_s", [0.001, 0.02])
+@pytest.mark.parametrize("seed", range(3))
+def test_gyro_that_contradicts_a_parked_vehicles_heading_ends_nothing(
+    rate_rad_s: float, std_rad_s: float, seed: int
+) -> None:
+    """Such as one that tells degrees for radians."""
+    chosen, rng = estimator(IMM), np.random.default_rng(seed)
+    memory: EstimatorMemory | None = None
+
+    def told(quantity: Quantity, t_s: float, value: list[float], std: float) -> Measurement:
+        noisy = np.array(value) + rng.normal(0.0, std, len(value))
+        return Measurement(t_ns=now_ns(t_s), quantity=quantity, value=noisy, covariance=std**2 * np.eye(len(value)))
+
+    for step in range(300):
+        t_s = step / 50
+        readings = [told(Quantity.HEADING, t_s, [0.0], 0.02), told(Quantity.YAW_RATE, t_s, [rate_rad_s], std_rad_s)]
+        if step % 5 == 0:
+            readings.append(told(Quantity.POSITION, t_s, [0.0, 0.0, 0.0], 0.02))
+            readings.append(told(Quantity.VELOCITY, t_s, [0.0, 0.0, 0.0], 0.05))
+        memory = chosen.fuse(memory, readings)
+        forecast = chosen.forecast(memory, now_ns(t_s), np.array([0.0, 1.0]))
+        assert forecast is not None
+        assert np.isfinite(forecast.position_std_m).all()
+
+
+def test_variance_that_contradictions_have_made_negative_is_told_as_none() -> None:
+    assert math.isnan(std_of(-1e-9))
+    assert std_of(0.04) == pytest.approx(0.2)
+
+
+def test_a_forecast_over_a_negative_variance_is_told_as_no_number() -> None:
+    place = Measurement(t_ns=now_ns(0.0), quantity=Quantity.POSITION, value=np.zeros(3), covariance=1e-4 * np.eye(3))
+    model = ImmModel(config=ImmConfig())
+    state: ImmState = model.start(place)
+    means, covariances, weights = state.modes
+    covariances = covariances.copy()
+    covariances[:, 7, 7] = -1e-6
+    forecast = model.forecast(replace(state, modes=(means, covariances, weights)), now_ns(0.0), np.array([0.0, 1.0]))
+    assert math.isnan(forecast.yaw_std_rad)
