@@ -22,14 +22,14 @@ from companion.autopilots.limits import (
 from companion.autopilots.messages import (
     ASK_AGAIN_S,
     Requested,
-    arm,
     ask,
+    ask_to_arm,
     ask_to_disarm,
     local_ned_setpoint,
     set_mode,
     take_off,
-    with_disarm_answer,
-    without_disarm,
+    with_arming_answer,
+    without_past_orders,
 )
 from companion.autopilots.response import Cascade, Shaping
 from companion.core.data import GRAVITY_M_S2, FlightLimits, Setpoint
@@ -123,22 +123,22 @@ class ArduPilotDriver:
         memory = replace(memory, climbs_by_itself=climbs)
         if desire.armed is False and view.armed:
             return ask_to_disarm(memory, desire, monotonic_ns)
-        memory = without_disarm(memory)
+        memory = without_past_orders(memory, desire)
         if desire.release and view.in_control:
             return ask(memory, set_mode(_BRAKE), monotonic_ns)
         if desire.control and not view.in_control:
             return ask(memory, set_mode(_GUIDED), monotonic_ns)
         if desire.armed and not view.armed:
-            return ask(memory, arm(armed=True), monotonic_ns)
+            return ask_to_arm(memory, monotonic_ns)
         if climbs and desire.takeoff_height_m is not None and view.armed and view.landed is not False:
             return _ask_to_take_off(memory, desire.takeoff_height_m, monotonic_ns)
         return memory, ()
 
     def acknowledged(self, memory: DriverMemory, command: int, result: int) -> DriverMemory:
-        """Count refused disarms, and remember whether it takes off."""
+        """Note what came of arming and disarming, and whether it takes off."""
         if command == mavlink.MAV_CMD_NAV_TAKEOFF:
             return replace(memory, takeoff_accepted=result == mavlink.MAV_RESULT_ACCEPTED)
-        return with_disarm_answer(memory, command, result)
+        return with_arming_answer(memory, command, result)
 
     def setpoint_message(self, setpoint: Setpoint, boot_ms: int, target_system: int) -> Message:
         """Return SET_POSITION_TARGET_LOCAL_NED; a group of it that is masked in part would mean "stop"."""

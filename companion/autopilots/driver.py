@@ -81,13 +81,15 @@ class AutopilotCommand(Struct, frozen=True, kw_only=True):
 class DriverMemory(Struct, frozen=True, kw_only=True):
     """When the driver last asked for what, and what was refused.
 
-    While the autopilot `climbs_by_itself` it is sent no setpoints.
+    While the autopilot `climbs_by_itself` it is sent no setpoints. Once it has accepted to arm it is not asked again: a
+    person, or the autopilot itself, stops the motors then.
     """
 
     streaming_since_ns: int | None = None
     asked_ns: Mapping[AutopilotCommand, int] | None = None
     disarm_asked: bool = False
     disarm_refusals: int = 0
+    arm_accepted: bool = False
     takeoff_accepted: bool = False  # the last one that was asked for
     climbs_by_itself: bool = False
 

@@ -35,10 +35,13 @@ def with_heartbeat(view: AutopilotView, message: Message, driver: Driver) -> Aut
 
 
 def with_acknowledgement(view: AutopilotView, answer: CommandAcknowledged) -> AutopilotView:
-    """Return the view after an answer; while it is armed, only a disarm can have been asked for."""
+    """Return the view after an answer; while it is armed, only a disarm can have been asked for.
+
+    One that is not armed has accepted to arm: what heartbeats told before that counts no more.
+    """
     is_accepted = answer.result == mavlink.MAV_RESULT_ACCEPTED
-    is_disarm = is_accepted and answer.command == mavlink.MAV_CMD_COMPONENT_ARM_DISARM
-    return replace(view, disarm_told=True) if is_disarm and view.armed else view
+    switches = is_accepted and answer.command == mavlink.MAV_CMD_COMPONENT_ARM_DISARM
+    return replace(view, disarm_told=view.armed) if switches else view
 
 
 def with_mode(view: AutopilotView, message: Message, driver: Driver) -> AutopilotView:

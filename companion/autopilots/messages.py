@@ -1,6 +1,6 @@
 """What every driver sends: a setpoint as SET_POSITION_TARGET_LOCAL_NED, and commands with their retries."""
 
-from companion.autopilots.driver import AutopilotCommand, Desire, DriverMemory
+from companion.autopilots.driver import AutopilotCommand, AutopilotView, Desire, DriverMemory
 from companion.core.data import Setpoint
 from link.frames.rotations import ned_from_enu, yaw_ned_from_enu
 from link.mavlink.dialect import Message, mavlink
@@ -74,22 +74,44 @@ def was_asked_to_arm(memory: DriverMemory, since_ns: int) -> bool:
 def ask_to_disarm(memory: DriverMemory, desire: Desire, monotonic_ns: int) -> Requested:
     """Ask plainly; once that was refused, and only with the evidence complete, force it."""
     force = desire.force_disarm and memory.disarm_refusals > 0
-    return ask(replace(memory, disarm_asked=True), arm(armed=False, force=force), monotonic_ns, _DISARM_AGAIN_S)
+    return ask(
+        replace(memory, disarm_asked=True, arm_accepted=False),
+        arm(armed=False, force=force),
+        monotonic_ns,
+        _DISARM_AGAIN_S,
+    )
 
 
-def without_disarm(memory: DriverMemory) -> DriverMemory:
-    """Return the memory once no disarm is wanted any more."""
-    if not (memory.disarm_asked or memory.disarm_refusals):
+def without_past_orders(memory: DriverMemory, desire: Desire) -> DriverMemory:
+    """Return the memory of a step that wants no disarm, without that order, and without an arming no longer wanted."""
+    arm_accepted = memory.arm_accepted and bool(desire.armed)
+    if not (memory.disarm_asked or memory.disarm_refusals) and arm_accepted == memory.arm_accepted:
         return memory
-    return replace(memory, disarm_asked=False, disarm_refusals=0)
+    return replace(memory, disarm_asked=False, disarm_refusals=0, arm_accepted=arm_accepted)
 
 
-def with_disarm_answer(memory: DriverMemory, command: int, result: int) -> DriverMemory:
-    """Count refused disarms; an answer to an earlier arming is none."""
+def with_arming_answer(memory: DriverMemory, command: int, result: int) -> DriverMemory:
+    """Count refused disarms, and remember an accepted arming; an answer to one is none to the other."""
+    if command != mavlink.MAV_CMD_COMPONENT_ARM_DISARM:
+        return memory
+    if not memory.disarm_asked:
+        is_arming = result == mavlink.MAV_RESULT_ACCEPTED and arm(armed=True) in (memory.asked_ns or {})
+        return replace(memory, arm_accepted=True) if is_arming else memory
     refused = result not in (mavlink.MAV_RESULT_ACCEPTED, mavlink.MAV_RESULT_IN_PROGRESS)
-    if command == mavlink.MAV_CMD_COMPONENT_ARM_DISARM and refused and memory.disarm_asked:
-        return replace(memory, disarm_refusals=memory.disarm_refusals + 1)
-    return memory
+    return replace(memory, disarm_refusals=memory.disarm_refusals + 1) if refused else memory
+
+
+def ask_to_arm(memory: DriverMemory, monotonic_ns: int) -> Requested:
+    """Ask for motors until that is accepted."""
+    return (memory, ()) if memory.arm_accepted else ask(memory, arm(armed=True), monotonic_ns)
+
+
+def was_arming_undone(memory: DriverMemory, view: AutopilotView, monotonic_ns: int) -> bool:
+    """Return whether motors that were accepted to be switched on are off, by a heartbeat of after that.
+
+    The first heartbeat may have been made before the motors turned.
+    """
+    return memory.arm_accepted and view.disarm_told and not view.armed and not is_arming(memory, monotonic_ns)
 
 
 def arm(*, armed: bool, force: bool = False) -> AutopilotCommand:

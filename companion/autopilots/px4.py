@@ -18,13 +18,13 @@ from companion.autopilots.limits import (
 )
 from companion.autopilots.messages import (
     Requested,
-    arm,
     ask,
+    ask_to_arm,
     ask_to_disarm,
     local_ned_setpoint,
     set_mode,
-    with_disarm_answer,
-    without_disarm,
+    with_arming_answer,
+    without_past_orders,
 )
 from companion.autopilots.px4_events import refusal_of
 from companion.autopilots.response import Cascade, Shaping
@@ -87,18 +87,21 @@ class Px4Driver:
             memory = replace(memory, streaming_since_ns=monotonic_ns)
         if desire.armed is False and view.armed:
             return ask_to_disarm(memory, desire, monotonic_ns)
-        memory = without_disarm(memory)
+        memory = without_past_orders(memory, desire)
         if desire.release and view.in_control:
             return ask(memory, set_mode(_MAIN_MODE_AUTO, _SUB_MODE_LOITER), monotonic_ns)
         if desire.control and not view.in_control and _streamed_s(memory, monotonic_ns) >= _STREAM_FIRST_S:
             return ask(memory, set_mode(_MAIN_MODE_OFFBOARD), monotonic_ns)
         if desire.armed and view.in_control and not view.armed:
-            return ask(memory, arm(armed=True), monotonic_ns)
+            return ask_to_arm(memory, monotonic_ns)
         return memory, ()
 
     def acknowledged(self, memory: DriverMemory, command: int, result: int) -> DriverMemory:
-        """Count refused disarms; of a mode's two acknowledgements the first says nothing, its confirmation does."""
-        return with_disarm_answer(memory, command, result)
+        """Note what came of arming and disarming.
+
+        Of a mode's two acknowledgements the first says nothing, its confirmation does.
+        """
+        return with_arming_answer(memory, command, result)
 
     def setpoint_message(self, setpoint: Setpoint, boot_ms: int, target_system: int) -> Message:
         """Return SET_POSITION_TARGET_LOCAL_NED."""

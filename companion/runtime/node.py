@@ -58,7 +58,7 @@ class CompanionNode:
         self.autopilot = AutopilotLink(session, system.config.autopilot, motion_rate_hz)
         self._dry_run = dry_run
         self._component = MavlinkComponent(session, is_open=is_component)
-        self._commands = StepCommands(self._component)
+        self.commands = StepCommands(self._component)
         self.publisher = StatusPublisher(keys, system.config, is_on=publishes)
         self._limits_wanted = system.config.limits.flight_limits()
         self.memory = StepMemory()
@@ -140,7 +140,7 @@ class CompanionNode:
 
     def request(self, command: Command, station: Station | None = None) -> None:
         """Take an operator's command, a follow with its station; its reply follows the next step."""
-        self._commands.request(command, station)
+        self.commands.request(command, station)
 
     def leave(self) -> None:
         """Ask the autopilot, from the next step on, to hover by itself; on the pad it switches its motors off first."""
@@ -181,7 +181,7 @@ class CompanionNode:
 
     def take_replies(self) -> list[CommandReply]:
         """Return the replies to operators' commands, once, in their order."""
-        return self._commands.take_replies()
+        return self.commands.take_replies()
 
     def is_due(self, local_ns: int) -> bool:
         """Return whether it is time for a step: one follows each new state of the drone, and waits no longer than that.
@@ -196,7 +196,7 @@ class CompanionNode:
         own_ns = None if state.own is None else state.own.t_ns
         self._clock.advance(way.local_to_utc_ns(local_ns), local_ns, own_ns, self.autopilot.utc_set_ns)
         switched = self.autopilot.pilot_switch.take()
-        command, station = self._commands.next(switched, lambda: self._start_refusal(switched), local_ns)
+        command, station = self.commands.next(switched, lambda: self._start_refusal(switched), local_ns)
         kept = self.inputs if self.phase in _KEEPS_LIMITS else None
         inputs = StepInputs(
             t_ns=self._clock.t_ns,
@@ -232,7 +232,7 @@ class CompanionNode:
 
     def _send(self, inputs: StepInputs, outputs: StepOutputs, local_ns: int) -> None:
         if outputs.reply is not None:
-            self._commands.answer(outputs.reply, local_ns)
+            self.commands.answer(outputs.reply, local_ns)
         if not self._dry_run:
             if outputs.setpoint is not None:
                 self.autopilot.send_setpoint(outputs.setpoint, local_ns)

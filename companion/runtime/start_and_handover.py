@@ -30,9 +30,10 @@ class OwnStart:
         return True
 
     def follow(self, node: CompanionNode, *, fix_seen: bool) -> None:
-        """Ask for the start as soon as everything is there."""
+        """Ask for the start as soon as everything is there, and no operator's command waits."""
         self.pending = self.pending and node.phase is Phase.IDLE
-        if self.pending and fix_seen and node.pad_known and node.is_ready_to_start():
+        is_free = node.is_ready_to_start() and not node.commands.waits
+        if self.pending and fix_seen and node.pad_known and is_free:
             node.request(Command.START)
 
     def answered(self, replies: list[CommandReply]) -> list[CommandReply]:

@@ -29,6 +29,11 @@ class StepCommands:
         self._sent: tuple[_Sender, Command] | None = None
         self._replies: list[CommandReply] = []
 
+    @property
+    def waits(self) -> bool:
+        """Whether an operator's command waits for a step."""
+        return self._requested is not None
+
     def request(self, command: Command, station: Station | None) -> None:
         """Take an operator's command, a follow with its station."""
         self._requested = command, station

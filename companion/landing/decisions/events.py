@@ -2,7 +2,7 @@
 
 import math
 
-from companion.autopilots.messages import is_arming, was_asked_to_arm
+from companion.autopilots.messages import is_arming, was_arming_undone, was_asked_to_arm
 from companion.config.companion import CompanionConfig
 from companion.config.planning import LandingStyle
 from companion.core.reasons import Cause, Reason
@@ -107,7 +107,8 @@ def _find_taken_control(phase: Phase, control: ControlMemory, s: Situation) -> D
     if not s.autopilot.in_control:
         return Event.PILOT_TOOK_OVER, Cause(_why_not_in_control(control, s, is_off_told=is_off_told))
     # On a deck, too: a person did it, or the autopilot's time was over, and nobody expects the motors to start again.
-    if control.was_armed and not s.autopilot.armed:
+    is_undone = was_arming_undone(control.driver, s.autopilot, s.monotonic_ns)
+    if is_undone or (control.was_armed and not s.autopilot.armed):
         return Event.PILOT_TOOK_OVER, Cause(Reason.DISARMED)
     return None
 

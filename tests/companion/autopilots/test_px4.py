@@ -76,6 +76,16 @@ def test_motors_are_armed_once_in_control_only() -> None:
     assert [(command.command, command.parameters[:2]) for _, command in sent] == [(DISARM, (1.0, 0.0))]
 
 
+def test_motors_that_were_accepted_to_turn_are_not_ordered_again_until_they_are_wanted_anew() -> None:
+    view, wanted = replace(GROUND, in_control=True), Desire(control=True, armed=True)
+    memory, _ = _run(view, wanted, 0.1)
+    assert _run(view, wanted, 3.0, DRIVER.acknowledged(memory, DISARM, REJECTED))[1]
+    memory, sent = _run(view, wanted, 5.0, DRIVER.acknowledged(memory, DISARM, ACCEPTED))
+    assert not sent
+    memory, _ = _run(view, Desire(), 0.1, memory)
+    assert _run(view, wanted, 1.5, memory)[1]
+
+
 def test_release_leaves_offboard_for_a_hover() -> None:
     _, sent = _run(ARMED, Desire(release=True), 0.5)
     assert [command.parameters[:3] for _, command in sent] == [(1.0, 4.0, 3.0)]

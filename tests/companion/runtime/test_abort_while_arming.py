@@ -2,6 +2,7 @@
 
 import pytest
 
+from companion.core.reasons import Reason
 from companion.situation.phases import Phase
 from link.mavlink.dialect import mavlink
 from link.messages import Command
@@ -55,3 +56,17 @@ def test_take_off_whose_order_to_arm_fails_after_the_abort_is_called_off(
     sent = len(setup.autopilot.setpoints())
     setup.run(1.0)
     assert len(setup.autopilot.setpoints()) == sent
+
+
+@pytest.mark.parametrize("after_s", [0.0, 0.01])
+def test_motors_that_a_person_stops_before_a_heartbeat_told_of_them_stay_off(after_s: float) -> None:
+    setup = started({})
+    setup.run(after_s)
+    assert setup.autopilot.armed
+    assert not setup.node.autopilot.state.view.armed
+    setup.autopilot.armed = False
+    setup.run(5.0)
+    assert [message.param1 for message in setup.autopilot.commands(ARM)] == [1.0]
+    assert setup.node.phase is Phase.PILOT
+    assert setup.node.outputs is not None
+    assert setup.node.outputs.status.reason_code == Reason.DISARMED.name

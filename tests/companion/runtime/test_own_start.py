@@ -48,6 +48,21 @@ def test_abort_or_hold_before_it_calls_the_start_off_for_good(command: Command) 
     assert replies == [CommandReply(accepted=True, reason="the start that was to come is called off")]
 
 
+def test_start_leaves_the_step_to_an_operators_command_that_waits() -> None:
+    setup, start = Setup(), OwnStart(wanted=True)
+
+    def turn() -> None:
+        setup.node.receive_pad(PAD)
+        setup.fix()
+        if setup.node.phase is Phase.IDLE and not setup.node.commands.waits:
+            setup.node.request(Command.HOLD)
+        start.follow(setup.node, fix_seen=True)
+
+    setup.run(3.0, turn)
+    assert setup.node.is_ready_to_start()
+    assert setup.node.phase is Phase.IDLE
+
+
 def test_abort_without_a_start_to_come_is_refused_as_ever() -> None:
     start, refused = OwnStart(wanted=False), CommandReply(accepted=False, reason="nothing to abort in phase idle")
     assert not start.commanded(Command.ABORT)
