@@ -37,7 +37,9 @@ _GuideOption = Annotated[
 _DeviceOption = Annotated[
     str,
     typer.Option(
-        "--mavlink", metavar="DEVICE", help="udpin:HOST:PORT, udpout:HOST:PORT, tcp:HOST:PORT or /dev/ttyX,BAUD."
+        "--mavlink",
+        metavar="DEVICE",
+        help="udpin:HOST:PORT, udpout:HOST:PORT, tcp:HOST:PORT, tcpin:HOST:PORT or /dev/ttyX,BAUD.",
     ),
 ]
 _SystemIdOption = Annotated[int, typer.Option("--system-id", min=1, max=255, help="MAVLink system id of the drone.")]

@@ -91,7 +91,7 @@ def settings_of_options(given: Sequence[str] | None, above: Mapping[str, Any] | 
         key, equals, value = one.partition("=")
         parts = key.strip().split(".")
         if not equals or not all(parts):
-            raise UserError(f"--set {one}: is no KEY=VALUE; write it as descent.cone.slope=0.3")
+            raise UserError(f"--set {one}: is no KEY=VALUE; write it as section.key=value")
         tables = merge(tables, _nested(parts, _value(value)))
     return merge(tables, above or {})
 
