@@ -84,7 +84,7 @@ class ImmModel:
 
     def predict(self, state: ImmState, dt_s: float) -> ImmState:
         """Return the state `dt_s` later."""
-        state = spun(state, dt_s, self.numbers.lever_m) if state.spin_rad_s else state
+        state = spun(state, dt_s, self.config, self.numbers) if state.spin_rad_s else state
         noises, begins_after_s, motion = self._noises(state), self.numbers.begins_after_s, self._motion(state)
         modes = mixing.predict_modes(state.modes, dt_s, noises, begins_after_s, motion, self._known_variance)
         return replace(
@@ -123,8 +123,7 @@ class ImmModel:
             white_variance = largest(R)
         if measurement.quantity is Quantity.HEADING:
             state = opened_unit(state, measurement)
-        slow_m_s = self.config.heading.course_speed_min_m_s
-        state, left = without_spin(state, measurement, self.numbers.lever_m, slow_m_s)
+        state, left = without_spin(state, measurement, self.config, self.numbers)
         if left is None:
             return Update(state=state, nis=1.0, gate_nis=1.0, dof=1)
         reading = (KINDS[measurement.quantity], _own(left.value), _own(R))

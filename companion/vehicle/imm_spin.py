@@ -10,11 +10,13 @@ import math
 
 import numpy as np
 
+from companion.config.estimation import ImmConfig
 from companion.core.data import Array, Measurement, Quantity
 from companion.vehicle import imm_mixing as mixing
 from companion.vehicle.imm_kernels import HEADING
+from companion.vehicle.imm_numbers import Numbers
 from companion.vehicle.imm_sensors import YAW_RATE, observe
-from companion.vehicle.imm_state import ImmState
+from companion.vehicle.imm_state import ImmState, is_heading_known
 from companion.vehicle.imm_swing import SIZE
 from link.records import replace
 
@@ -26,7 +28,7 @@ _NO_LEVER = np.zeros(4)
 
 
 def without_spin(
-    state: ImmState, measurement: Measurement, lever_m: Array, slow_m_s: float
+    state: ImmState, measurement: Measurement, config: ImmConfig, numbers: Numbers
 ) -> tuple[ImmState, Measurement | None]:
     """Return the state with how fast the vehicle turns on the spot, and what the measurement tells beside that.
 
@@ -35,11 +37,11 @@ def without_spin(
     Args:
         state: predicted to the measurement.
         measurement: of any quantity.
-        lever_m: (4,) from the antenna to the pad in V, as `observe` takes it.
-        slow_m_s: up to which speed a vehicle may turn on the spot.
+        config: of the filter.
+        numbers: the same as the kernels take them.
     """
     if measurement.quantity is Quantity.YAW_RATE:
-        spin_rad_s = _spin_told(state, measurement, slow_m_s)
+        spin_rad_s = _spin_told(state, measurement, config.heading.course_speed_min_m_s)
         if spin_rad_s == 0.0 == state.spin_rad_s:
             return state, measurement
         state = replace(state, spin_rad_s=spin_rad_s, spin_left_s=_HOLDS_S, turn_age_s=0.0)
@@ -47,20 +49,22 @@ def without_spin(
     if measurement.quantity is not Quantity.VELOCITY or state.spin_rad_s == 0.0:
         return state, measurement
     means, _, weights = state.modes
-    east_m, north_m = _turned(float(weights @ means[:, HEADING]), lever_m)
+    east_m, north_m = _turned(float(weights @ means[:, HEADING]), _lever_m(state, config, numbers))
     value = measurement.value + state.spin_rad_s * np.array([-north_m, east_m, 0.0])
     return state, replace(measurement, value=value)
 
 
-def spun(state: ImmState, dt_s: float, lever_m: Array) -> ImmState:
+def spun(state: ImmState, dt_s: float, config: ImmConfig, numbers: Numbers) -> ImmState:
     """Return the state whose heading has turned on the spot for `dt_s`, about the pad's centre as in every turn.
 
     Args:
         state: before.
         dt_s: so long ago.
-        lever_m: as `without_spin` takes it.
+        config: of the filter.
+        numbers: the same as the kernels take them.
     """
     means, covariances, weights = state.modes
+    lever_m = _lever_m(state, config, numbers)
     turns_s, moved, opened = min(dt_s, state.spin_left_s), means.copy(), np.empty_like(covariances)
     moved[:, HEADING] += state.spin_rad_s * turns_s
     for mode, (before, after) in enumerate(zip(means, moved, strict=True)):
@@ -90,6 +94,11 @@ def _spin_told(state: ImmState, yaw_rate: Measurement, slow_m_s: float) -> float
     off_rad_s = float(yaw_rate.value[0] - expected[0])
     variance = float((H @ P @ H.T)[0, 0] + yaw_rate.covariance[0, 0])
     return off_rad_s if off_rad_s**2 > _STDS**2 * max(variance, 0.0) else 0.0
+
+
+def _lever_m(state: ImmState, config: ImmConfig, numbers: Numbers) -> Array:
+    """Return the lever from the antenna to the pad (4,) in V; while the heading is unknown it has no direction."""
+    return numbers.lever_m if is_heading_known(state, config) else _NO_LEVER
 
 
 def _turned(heading_rad: float, lever_m: Array) -> Array:

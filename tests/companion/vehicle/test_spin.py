@@ -10,6 +10,9 @@ from companion.core.data import Measurement, Quantity
 from companion.vehicle.estimator import EstimatorMemory
 from companion.vehicle.filter_step import std_of
 from companion.vehicle.imm import ImmModel
+from companion.vehicle.imm_kernels import HEADING
+from companion.vehicle.imm_numbers import Deck
+from companion.vehicle.imm_spin import spun
 from companion.vehicle.imm_state import ImmState
 from link.frames.rotations import wrap_angle
 from link.records import replace
@@ -19,6 +22,7 @@ from tests.companion.vehicle.test_standing import turning_on_the_spot
 
 IMM = EstimatorKind.IMM
 TURNS_S, TURNED_S, DONE_S = 5.0, 11.0, 15.0
+PLACE = Measurement(t_ns=now_ns(0.0), quantity=Quantity.POSITION, value=np.zeros(3), covariance=1e-4 * np.eye(3))
 TOLD = replace(NOMINAL, heading_std_rad=0.03)
 GYRO_ALONE = replace(NOMINAL, heading_std_rad=0.0)
 
@@ -49,6 +53,22 @@ def test_gyro_carries_a_heading_that_was_learnt_through_a_turn_on_the_spot() -> 
     found = np.array([yaw_error(turns, GYRO_ALONE, seed) for seed in range(4)])
     assert np.abs(found[:, 0]).max() < 0.3  # of 3 rad
     assert np.mean((found[:, 0] / found[:, 1]) ** 2) < 3.0
+
+
+@pytest.mark.parametrize(("heading_std_rad", "moves"), [(0.1, True), (2.0, False)])
+def test_turn_swings_the_antenna_about_the_pad_where_the_heading_is_known(
+    heading_std_rad: float, *, moves: bool
+) -> None:
+    model = ImmModel(config=ImmConfig(), deck=Deck(antenna_to_pad_m=(1.5, 0.0, 0.0)))
+    state = model.start(PLACE)
+    means, covariances, weights = state.modes
+    covariances = covariances.copy()
+    covariances[:, HEADING, HEADING] = heading_std_rad**2
+    state = replace(state, modes=(means, covariances, weights), spin_rad_s=1.0, spin_left_s=0.5)
+    after = spun(state, 0.2, model.config, model.numbers)
+    swung_m = 1.5 * np.array([1.0 - math.cos(0.2), -math.sin(0.2)])
+    assert after.modes[0][:, :2] == pytest.approx(means[:, :2] + (swung_m if moves else 0.0))
+    assert after.modes[0][:, HEADING] == pytest.approx(np.full(len(weights), 0.2))
 
 
 @pytest.mark.parametrize(("t_s", "is_known"), [(4.9, True), (8.0, False), (13.0, True)])
@@ -102,11 +122,10 @@ def test_variance_that_contradictions_have_made_negative_is_told_as_none() -> No
 
 
 def test_a_forecast_over_a_negative_variance_is_told_as_no_number() -> None:
-    place = Measurement(t_ns=now_ns(0.0), quantity=Quantity.POSITION, value=np.zeros(3), covariance=1e-4 * np.eye(3))
     model = ImmModel(config=ImmConfig())
-    state: ImmState = model.start(place)
+    state: ImmState = model.start(PLACE)
     means, covariances, weights = state.modes
     covariances = covariances.copy()
-    covariances[:, 7, 7] = -1e-6
+    covariances[:, HEADING, HEADING] = -1e-6
     forecast = model.forecast(replace(state, modes=(means, covariances, weights)), now_ns(0.0), np.array([0.0, 1.0]))
     assert math.isnan(forecast.yaw_std_rad)
