@@ -79,6 +79,8 @@ def recordings(folder: Path, stem: str) -> list[list[Path]]:
     Raises:
         UserError: there are none.
     """
+    if folder.is_file():
+        raise UserError(f"{folder}: is a file of a recording, which may have several; name its folder {folder.parent}")
     files = present_files(folder, stem)
     if not files:
         raise UserError(f"{folder}: holds no recording {stem}_*.mcap; name a run that was flown without --no-record")

@@ -12,7 +12,7 @@ from companion.config.companion import CompanionConfig
 from companion.recording.folder import recording_sink
 from link.errors import UserError
 from link.program.toml_config import merge, validate
-from link.recording.mcap_reader import read_messages, recording_files
+from link.recording.mcap_reader import read_messages, recording_files, recordings
 from link.recording.recorder import BackgroundRecorder
 from link.zenoh.keys import Keys
 from scenarios.catalogue.catalogue import load_scenario
@@ -156,6 +156,13 @@ def test_folder_without_a_recording_is_told(tmp_path: Path) -> None:
     tmp_path.joinpath("result.json").write_text(json.dumps(result), encoding="utf-8")
     with pytest.raises(UserError, match="holds no recording"):
         draw_figures(tmp_path, None)
+
+
+def test_file_in_place_of_its_folder_is_told_which_folder_to_name(tmp_path: Path) -> None:
+    file = tmp_path / "companion_000.mcap"
+    file.touch()
+    with pytest.raises(UserError, match=f"name its folder {tmp_path}"):
+        recordings(file, "companion")
 
 
 def test_full_disk_costs_records_and_changes_nothing_of_the_landing(run: Path, small_disk: Path) -> None:
