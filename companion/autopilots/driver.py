@@ -89,7 +89,8 @@ class DriverMemory(Struct, frozen=True, kw_only=True):
     asked_ns: Mapping[AutopilotCommand, int] | None = None
     disarm_asked: bool = False
     disarm_refusals: int = 0
-    arm_accepted: bool = False
+    arm_asked: bool = False
+    arm_accepted: bool = False  # and not refused since
     takeoff_accepted: bool = False  # the last one that was asked for
     climbs_by_itself: bool = False
 

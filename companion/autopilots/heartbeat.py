@@ -1,7 +1,8 @@
 """What the autopilot's heartbeat, mode and landed state tell: whether it is armed, in control, in a failsafe; pure.
 
 One heartbeat that says "disarmed" may be anybody's, or a forger's: it counts once it is told again, or at once where a
-disarm was asked for and accepted. Until then the motors may turn.
+disarm was asked for and accepted. Until then the motors may turn. Motors that have
+not been told to turn, though that was accepted, are off.
 """
 
 from companion.autopilots.driver import AutopilotView, Driver

@@ -74,42 +74,41 @@ def was_asked_to_arm(memory: DriverMemory, since_ns: int) -> bool:
 def ask_to_disarm(memory: DriverMemory, desire: Desire, monotonic_ns: int) -> Requested:
     """Ask plainly; once that was refused, and only with the evidence complete, force it."""
     force = desire.force_disarm and memory.disarm_refusals > 0
-    return ask(
-        replace(memory, disarm_asked=True, arm_accepted=False),
-        arm(armed=False, force=force),
-        monotonic_ns,
-        _DISARM_AGAIN_S,
-    )
+    memory = replace(memory, disarm_asked=True, arm_asked=False, arm_accepted=False)
+    return ask(memory, arm(armed=False, force=force), monotonic_ns, _DISARM_AGAIN_S)
 
 
 def without_past_orders(memory: DriverMemory, desire: Desire) -> DriverMemory:
     """Return the memory of a step that wants no disarm, without that order, and without an arming no longer wanted."""
-    arm_accepted = memory.arm_accepted and bool(desire.armed)
-    if not (memory.disarm_asked or memory.disarm_refusals) and arm_accepted == memory.arm_accepted:
+    if memory.arm_asked and not desire.armed:
+        memory = replace(memory, arm_asked=False, arm_accepted=False)
+    if not (memory.disarm_asked or memory.disarm_refusals):
         return memory
-    return replace(memory, disarm_asked=False, disarm_refusals=0, arm_accepted=arm_accepted)
+    return replace(memory, disarm_asked=False, disarm_refusals=0)
 
 
 def with_arming_answer(memory: DriverMemory, command: int, result: int) -> DriverMemory:
     """Count refused disarms, and remember an accepted arming; an answer to one is none to the other."""
-    if command != mavlink.MAV_CMD_COMPONENT_ARM_DISARM:
+    if command != mavlink.MAV_CMD_COMPONENT_ARM_DISARM or result == mavlink.MAV_RESULT_IN_PROGRESS:
         return memory
-    if not memory.disarm_asked:
-        is_arming = result == mavlink.MAV_RESULT_ACCEPTED and arm(armed=True) in (memory.asked_ns or {})
-        return replace(memory, arm_accepted=True) if is_arming else memory
-    refused = result not in (mavlink.MAV_RESULT_ACCEPTED, mavlink.MAV_RESULT_IN_PROGRESS)
-    return replace(memory, disarm_refusals=memory.disarm_refusals + 1) if refused else memory
+    is_accepted = result == mavlink.MAV_RESULT_ACCEPTED
+    if memory.arm_asked:
+        return replace(memory, arm_accepted=is_accepted)
+    is_refused = memory.disarm_asked and not is_accepted
+    return replace(memory, disarm_refusals=memory.disarm_refusals + 1) if is_refused else memory
 
 
 def ask_to_arm(memory: DriverMemory, monotonic_ns: int) -> Requested:
     """Ask for motors until that is accepted."""
-    return (memory, ()) if memory.arm_accepted else ask(memory, arm(armed=True), monotonic_ns)
+    if memory.arm_accepted:
+        return memory, ()
+    return ask(memory if memory.arm_asked else replace(memory, arm_asked=True), arm(armed=True), monotonic_ns)
 
 
 def was_arming_undone(memory: DriverMemory, view: AutopilotView, monotonic_ns: int) -> bool:
-    """Return whether motors that were accepted to be switched on are off, by a heartbeat of after that.
+    """Return whether motors that were accepted to be switched on are off, by the newest heartbeat.
 
-    The first heartbeat may have been made before the motors turned.
+    It counts some time after the order: one of right after the answer may have been made before the motors turned.
     """
     return memory.arm_accepted and view.disarm_told and not view.armed and not is_arming(memory, monotonic_ns)
 

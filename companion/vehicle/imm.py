@@ -171,7 +171,7 @@ class ImmModel:
             acceleration_enu_m_s2=told[6:],
             covariance=0.5 * (covariance + covariance.T),
             yaw_rad=wrapped(float(x[HEADING])) if known else None,
-            yaw_rate_rad_s=float(x[CURVATURE] * math.hypot(x[2], x[3])) if known else None,
+            yaw_rate_rad_s=float(x[CURVATURE] * math.hypot(x[2], x[3])) + state.spin_rad_s if known else None,
             mixture=Mixture(weight=state.modes[2], off=pad_off, covariance=pad_covariance),
         )
 

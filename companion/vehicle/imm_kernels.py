@@ -19,9 +19,10 @@ State `x` (26,) of the vehicle in W:
   25  m    what the vehicle's unit tells of the heading too much, rad (Gauss-Markov)
 With `w = k |v|` and J the turn by +90 degrees: `dp = v, dv = w J v + b, db = w J b - b/tau, dpsi = w`. At constant
 `w` this has a closed form: in a frame that turns with the vehicle, `v` relaxes along `b` and nothing else happens.
-At rest `w` is zero, so a standing vehicle cannot turn. Braking ends at standstill. The curvature is driven by the
-lateral acceleration that drivers change, `q / v^4`, and fades (Ornstein-Uhlenbeck) so that its standard deviation stays
-that of what a vehicle can steer: a random walk would let a vehicle that stands turn about its own antenna.
+At rest `w` is zero, so a standing vehicle turns by `imm_spin` alone. Braking ends at standstill. The curvature is
+driven by the lateral acceleration that drivers change, `q / v^4`, and fades (Ornstein-Uhlenbeck) so that its standard
+deviation stays that of what a vehicle can steer: a random walk would let a vehicle that stands turn about its own
+antenna.
 Along the distance s that is driven in the direction of the heading, `dz/ds = g, dg/ds = e`; e is driven by noise per
 metre and fades over the length of a vertical curve. So height changes with the distance only: a vehicle that stands
 neither climbs nor heaves, a fast one meets a grade all the sooner.

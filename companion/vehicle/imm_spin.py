@@ -22,7 +22,8 @@ from link.records import replace
 
 _STDS = 5.0  # beyond what is expected: noise alone does it once in a million readings
 _HOLDS_S = 0.5  # without another reading: several periods of the slowest gyro
-_ERRS_SHARE = 0.2  # of the rate, for a second: it changes between readings, and is told late
+_EXPLAINED_MAX = 0.5  # of what is told: a curve that was more than that has ended, and is to be learnt anew
+_ERRS_SHARE = 0.2  # of the rate, as the heading's standard deviation after a second; a choice, 10 readings a second
 _SPINS_RAD_S = 0.2  # a pad 2.5 m beside the centre is then beyond the S2 speed; cars that depart turn more slowly
 _NO_LEVER = np.zeros(4)
 
@@ -59,7 +60,7 @@ def spun(state: ImmState, dt_s: float, config: ImmConfig, numbers: Numbers) -> I
 
     Args:
         state: before.
-        dt_s: so long ago.
+        dt_s: time that passes.
         config: of the filter.
         numbers: the same as the kernels take them.
     """
@@ -91,9 +92,11 @@ def _spin_told(state: ImmState, yaw_rate: Measurement, slow_m_s: float) -> float
         return 0.0
     x, P = mixing.combine(means, covariances, weights)
     expected, H = observe(YAW_RATE, x, _NO_LEVER, True)
-    off_rad_s = float(yaw_rate.value[0] - expected[0])
+    told_rad_s = float(yaw_rate.value[0])
+    off_rad_s = told_rad_s - float(expected[0])
     variance = float((H @ P @ H.T)[0, 0] + yaw_rate.covariance[0, 0])
-    return off_rad_s if off_rad_s**2 > _STDS**2 * max(variance, 0.0) else 0.0
+    is_curve = abs(float(expected[0])) > _EXPLAINED_MAX * abs(told_rad_s)
+    return 0.0 if is_curve or off_rad_s**2 <= _STDS**2 * max(variance, 0.0) else off_rad_s
 
 
 def _lever_m(state: ImmState, config: ImmConfig, numbers: Numbers) -> Array:

@@ -86,6 +86,19 @@ def test_motors_that_were_accepted_to_turn_are_not_ordered_again_until_they_are_
     assert _run(view, wanted, 1.5, memory)[1]
 
 
+def test_late_answer_to_a_disarm_is_none_to_the_arming_that_follows_it_and_is_refused() -> None:
+    view, wanted = replace(GROUND, in_control=True), Desire(control=True, armed=True)
+    memory, _ = _run(view, wanted, 0.1)
+    memory, _ = _run(ARMED, OFF, 0.1, memory)
+    memory, _ = _run(view, Desire(), 0.1, memory)
+    memory = DRIVER.acknowledged(memory, DISARM, ACCEPTED)
+    memory, _ = _run(view, wanted, 0.1, memory)
+    memory = DRIVER.acknowledged(memory, DISARM, ACCEPTED)
+    memory = DRIVER.acknowledged(memory, DISARM, REJECTED)
+    assert not memory.arm_accepted
+    assert _run(view, wanted, 1.5, memory)[1]
+
+
 def test_release_leaves_offboard_for_a_hover() -> None:
     _, sent = _run(ARMED, Desire(release=True), 0.5)
     assert [command.parameters[:3] for _, command in sent] == [(1.0, 4.0, 3.0)]

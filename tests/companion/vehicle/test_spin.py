@@ -1,13 +1,14 @@
 """A vehicle that turns on the spot: its heading follows its gyro, and no reading ends the filter."""
 
 import math
+from typing import cast
 
 import numpy as np
 import pytest
 
 from companion.config.estimation import EstimatorKind, ImmConfig
 from companion.core.data import Measurement, Quantity
-from companion.vehicle.estimator import EstimatorMemory
+from companion.vehicle.estimator import DelayBuffer, EstimatorMemory
 from companion.vehicle.filter_step import std_of
 from companion.vehicle.imm import ImmModel
 from companion.vehicle.imm_kernels import HEADING
@@ -80,14 +81,33 @@ def test_there_is_no_heading_to_land_by_while_the_vehicle_turns(t_s: float, *, i
     assert (forecast.yaw_rad is not None) is is_known
 
 
+def spin_of(memory: EstimatorMemory | None) -> float:
+    state = cast("DelayBuffer[ImmState]", memory).newest.state
+    assert isinstance(state, ImmState)
+    return state.spin_rad_s
+
+
 def test_car_that_departs_in_a_bend_does_not_turn_on_the_spot() -> None:
     chosen = estimator(IMM)
-    departs = drive(16.0, lambda t: max(2.0 * (t - 8.0), 0.0), lambda t: 0.1 if t > 8.0 else 0.0)
+    departs = drive(16.0, lambda t: max(3.0 * (t - 8.0), 0.0), lambda t: 0.25 if t > 8.0 else 0.0)
     for t_s in np.arange(8.0, 11.0, 0.2):
         done = ride(chosen, departs, TOLD, 0, from_s=t_s - 0.1, until_s=t_s)
+        assert spin_of(done.memory) == 0.0
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_rover_that_ends_a_tight_arc_and_speeds_up_has_not_turned_on_the_spot(seed: int) -> None:
+    """Its curvature was 5 1/m, and what is left of it is to be learnt anew."""
+    rover = drive(
+        12.0, lambda t: 0.3 if t < 5.0 else min(0.3 + 1.5 * (t - 5.0), 4.0), lambda t: 5.0 if 2.0 < t < 5.0 else 0.0
+    )
+    chosen = estimator(IMM)
+    for t_s in np.arange(5.4, 7.0, 0.2):
+        done = ride(chosen, rover, TOLD, seed, from_s=t_s, until_s=t_s + 0.1)
         forecast = chosen.forecast(done.memory, now_ns(t_s), np.array([0.0]))
         assert forecast is not None
         assert forecast.yaw_rad is not None
+        assert abs(wrap_angle(float(forecast.yaw_rad[0]) - rover.at(t_s)[2])) < 0.5
 
 
 @pytest.mark.parametrize("rate_rad_s", [0.5, 2.0, 6.0])
