@@ -123,6 +123,7 @@ class McapFile:
                 self._writer.add_attachment(0, 0, name, "text/plain", text.encode())
         except OSError:
             self._file.close()
+            path.unlink(missing_ok=True)  # the next try, once there is room again, takes the same name
             raise
 
     @property

@@ -81,8 +81,8 @@ def velocity_of_gps(payload: bytes) -> FixVelocity:
     if not isfinite(message.speed) or (moves and not isfinite(message.track)):
         raise PayloadError("it has no velocity")
     course_rad = radians(message.track) if moves else 0.0
-    along = (message.err_speed / _STDS) ** 2
-    up = (message.err_climb / _STDS) ** 2
+    along_std_m_s, up_std_m_s = message.err_speed / _STDS, message.err_climb / _STDS
+    along, up = along_std_m_s * along_std_m_s, up_std_m_s * up_std_m_s  # a power of a huge one would raise an error
     known = isfinite(along) and isfinite(up) and min(along, up) > 0.0
     return FixVelocity(
         t_ns=stamp_ns(message.header),

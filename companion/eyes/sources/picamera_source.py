@@ -143,11 +143,14 @@ def open_picamera(size_px: tuple[int, int]) -> PiCamera:
         raise UserError(
             "--source picamera needs picamera2: apt install python3-picamera2, in an environment with system packages"
         ) from None
+    camera = None
     try:
         camera = library.Picamera2()
         camera.configure(camera.create_video_configuration(main={"size": size_px, "format": "YUV420"}))
         camera.start()
     except (RuntimeError, IndexError) as error:
+        if camera is not None:  # else nobody could open it again
+            camera.close()
         why = " ".join(str(error).split())[:120]
         raise UserError(f"--source picamera gives no pictures ({why}): connect one, or end who has it") from None
     return camera  # type: ignore[no-any-return]  # picamera2 has no types

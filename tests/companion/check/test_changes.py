@@ -19,6 +19,23 @@ def test_second_change_keeps_the_values_from_before_the_first(tmp_path: Path) ->
     assert read_kept(path) == {"A": 1.0, "B": 2.0, "C": 3.0}
 
 
+def test_values_from_before_stay_where_their_file_cannot_be_written_anew(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = tmp_path / "before.json"
+    keep(path, {"A": 1.0})
+
+    def full(file: Path, text: str, encoding: str) -> int:
+        file.write_bytes(text.encode(encoding)[:3])
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(Path, "write_text", full)
+    with pytest.raises(UserError, match="No space left"):
+        keep(path, {"B": 2.0})
+    assert read_kept(path) == {"A": 1.0}
+    assert list(tmp_path.iterdir()) == [path]
+
+
 @pytest.mark.parametrize("text", ["", "[1]", '{"A": "x"}', '{"A": NaN}', '{"A": null}'])
 def test_other_files_are_refused_with_their_name(text: str, tmp_path: Path) -> None:
     path = tmp_path / "other.json"

@@ -146,6 +146,30 @@ def test_write_that_fails_is_told_and_leaves_a_readable_file(tmp_path: Path, mon
     assert sum(1 for _ in read_messages(files)) == 20_000 - lost
 
 
+def test_recording_goes_on_once_a_full_disk_has_room_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    whole, is_full = mcap_writer._WholeRecords.write, False  # noqa: SLF001 (where a disk fills up)
+
+    def write(file: mcap_writer._WholeRecords, data: bytes) -> int:
+        if is_full:
+            raise OSError(28, "No space left on device")
+        return whole(file, data)
+
+    monkeypatch.setattr(mcap_writer._WholeRecords, "write", write)  # noqa: SLF001 (where a disk fills up)
+    recording = McapRecording(RecordingSpec(folder=tmp_path, stem="test"))
+    lost = 0
+    for index in range(40_000):
+        is_full = 10_000 <= index < 30_000
+        try:
+            recording.add(_setpoint(index), index)
+        except RecordsLost as error:
+            lost += error.count
+        except OSError:
+            lost += 1
+    recording.close()
+    assert 15_000 < lost < 35_000
+    assert sum(1 for _ in read_messages(recording_files(tmp_path, "test"))) == 40_000 - lost
+
+
 def test_folder_that_cannot_be_made_is_told(tmp_path: Path) -> None:
     tmp_path.joinpath("file").write_text("", encoding="utf-8")
     with pytest.raises(UserError, match="choose another place"):

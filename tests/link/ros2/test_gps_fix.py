@@ -55,6 +55,7 @@ def test_receiver_that_stands_needs_no_course() -> None:
 
 def test_what_is_not_known_is_not_made_up() -> None:
     assert velocity_of_gps(gps(err_speed=0.0)).velocity_covariance_enu_m2_s2 is None
+    assert velocity_of_gps(gps(err_speed=1e200)).velocity_covariance_enu_m2_s2 is None
     assert not velocity_of_gps(gps(climb=nan)).is_vertical_measured
     with pytest.raises(PayloadError):
         velocity_of_gps(gps(track=nan))

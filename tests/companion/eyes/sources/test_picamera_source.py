@@ -1,6 +1,8 @@
 """A Raspberry Pi's camera: when its pictures were taken, and one that is not there."""
 
+import sys
 import threading
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -8,7 +10,7 @@ import pytest
 from numpy.typing import NDArray
 
 from companion.eyes.sources.opening import SourceOptions, open_source
-from companion.eyes.sources.picamera_source import PiCameraSource, PiRequest
+from companion.eyes.sources.picamera_source import PiCameraSource, PiRequest, open_picamera
 from link.errors import UserError
 from link.program.clock import SystemClock
 from link.zenoh.keys import Keys
@@ -66,6 +68,21 @@ def test_without_picamera2_it_is_said_how_to_install_it() -> None:
     options = SourceOptions(size_px=SIZE_PX, latency_s=0.0, rate_hz=30.0)
     with pytest.raises(UserError, match="python3-picamera2"):
         open_source("picamera", options, Keys("decklander", "vehicle", "drone"), None)  # type: ignore[arg-type]  # unused
+
+
+def test_camera_that_does_not_start_is_let_go(monkeypatch: pytest.MonkeyPatch) -> None:
+    camera = Camera()
+
+    def busy() -> None:
+        raise RuntimeError("Device or resource busy")
+
+    opened = SimpleNamespace(
+        configure=lambda _: None, create_video_configuration=lambda **_: {}, start=busy, close=camera.close
+    )
+    monkeypatch.setitem(sys.modules, "picamera2", SimpleNamespace(Picamera2=lambda: opened))
+    with pytest.raises(UserError, match="resource busy"):
+        open_picamera(SIZE_PX)
+    assert camera.closed.is_set()
 
 
 def test_latency_that_was_measured_counts_beside_what_the_camera_tells() -> None:
