@@ -1,8 +1,7 @@
 """What the autopilot's heartbeat, mode and landed state tell: whether it is armed, in control, in a failsafe; pure.
 
 One heartbeat that says "disarmed" may be anybody's, or a forger's: it counts once it is told again, or at once where a
-disarm was asked for and accepted. Until then the motors may turn. Motors that have
-not been told to turn, though that was accepted, are off.
+disarm was asked for and accepted. Until then the motors may turn.
 """
 
 from companion.autopilots.driver import AutopilotView, Driver
@@ -38,7 +37,7 @@ def with_heartbeat(view: AutopilotView, message: Message, driver: Driver) -> Aut
 def with_acknowledgement(view: AutopilotView, answer: CommandAcknowledged) -> AutopilotView:
     """Return the view after an answer; while it is armed, only a disarm can have been asked for.
 
-    One that is not armed has accepted to arm: what heartbeats told before that counts no more.
+    While it is not, it is an arming, mostly: what heartbeats told before that counts no more.
     """
     is_accepted = answer.result == mavlink.MAV_RESULT_ACCEPTED
     switches = is_accepted and answer.command == mavlink.MAV_CMD_COMPONENT_ARM_DISARM

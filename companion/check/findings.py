@@ -8,6 +8,7 @@ from enum import Enum
 from pathlib import Path
 
 from link.errors import UserError
+from link.program.whole_file import replace_file
 
 
 class Level(Enum):
@@ -73,12 +74,9 @@ def keep(path: Path, before: Mapping[str, float]) -> None:
         UserError: the file cannot be written, or is another's.
     """
     earlier = read_kept(path) if path.exists() else {}
-    whole = path.with_name(f"{path.name}.new")  # what is there stays until all of it is written
     try:
-        whole.write_text(json.dumps({**before, **earlier}, indent=2) + "\n", encoding="utf-8")
-        whole.replace(path)
+        replace_file(path, json.dumps({**before, **earlier}, indent=2).encode() + b"\n")
     except OSError as error:
-        whole.unlink(missing_ok=True)
         raise UserError(f"{path}: cannot be written ({error.strerror}); choose another --keep FILE") from error
 
 

@@ -25,7 +25,7 @@ class SolverKind(Enum):
     """Which QP solver."""
 
     DAQP = "daqp"  # dual active set: exact, some 60 us for a plan
-    OSQP = "osqp"  # operator splitting, polished: 22 ms in the median and up to 0.15 s for the same; to compare with
+    OSQP = "osqp"  # operator splitting, polished: some 70 times as long; to compare with
 
 
 class ReportReading(Enum):

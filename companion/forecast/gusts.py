@@ -24,7 +24,7 @@ _PRIOR_S = 1.0  # as long as the estimate of a push needs to forget how it began
 _FORGETS_S = 20.0  # a gust lasts some seconds, a landing ten or twenty
 _BREAK_S = 0.25
 _COMPARED_S = 1.0  # after which a push is compared with what was expected: ten times the drone's lag
-_MATTERS_STD_M_S2 = 1.5 * DRAG_PER_S  # light turbulence of MIL-F-8785C: 1.5 m/s near the ground, in 15 knots of wind
+_MATTERS_STD_M_S2 = 1.5 * DRAG_PER_S  # that a doubt is weighed against: light turbulence of MIL-F-8785C, 1.5 m/s
 _EXPECTED_STD_M_S2 = 0.8 * DRAG_PER_S  # turbulence of MIL-F-8785C at 5 m in a gentle breeze: a fifth of 4 m/s
 _SETTLES_S = 0.4  # the longest time constant of the estimate of a push: earlier jerk is forgotten
 

@@ -123,10 +123,11 @@ class ImmModel:
             white_variance = largest(R)
         if measurement.quantity is Quantity.HEADING:
             state = opened_unit(state, measurement)
-        state, left = without_spin(state, measurement, self.config, self.numbers)
-        if left is None:
+        state, beside = without_spin(state, measurement, self.config, self.numbers)
+        if beside is None:  # as likely as any reading that the filter expects
             return Update(state=state, nis=1.0, gate_nis=1.0, dof=1)
-        reading = (KINDS[measurement.quantity], _own(left.value), _own(R))
+        measurement = beside
+        reading = (KINDS[measurement.quantity], _own(measurement.value), _own(R))
         tells_motion = measurement.quantity in MOTIONS
         tells_driving = tells_motion or measurement.quantity is self.placed_by
         modes = self._after_silence(state) if tells_motion and state.unmeasured_s > 0.0 else state.modes

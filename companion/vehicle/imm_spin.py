@@ -11,13 +11,15 @@ import math
 import numpy as np
 
 from companion.config.estimation import ImmConfig
-from companion.core.data import Array, Measurement, Quantity
+from companion.core.data import Measurement, Quantity
 from companion.vehicle import imm_mixing as mixing
 from companion.vehicle.imm_kernels import HEADING
 from companion.vehicle.imm_numbers import Numbers
 from companion.vehicle.imm_sensors import YAW_RATE, observe
 from companion.vehicle.imm_state import ImmState, is_heading_known
 from companion.vehicle.imm_swing import SIZE
+from companion.vehicle.lever import turned
+from companion.vehicle.small_matrices import carried_through
 from link.records import replace
 
 _STDS = 5.0  # beyond what is expected: noise alone does it once in a million readings
@@ -50,7 +52,8 @@ def without_spin(
     if measurement.quantity is not Quantity.VELOCITY or state.spin_rad_s == 0.0:
         return state, measurement
     means, _, weights = state.modes
-    east_m, north_m = _turned(float(weights @ means[:, HEADING]), _lever_m(state, config, numbers))
+    forward_m, left_m = _lever_m(state, config, numbers)
+    east_m, north_m = turned(forward_m, left_m, float(weights @ means[:, HEADING]))
     value = measurement.value + state.spin_rad_s * np.array([-north_m, east_m, 0.0])
     return state, replace(measurement, value=value)
 
@@ -65,14 +68,14 @@ def spun(state: ImmState, dt_s: float, config: ImmConfig, numbers: Numbers) -> I
         numbers: the same as the kernels take them.
     """
     means, covariances, weights = state.modes
-    lever_m = _lever_m(state, config, numbers)
+    forward_m, left_m = _lever_m(state, config, numbers)
     turns_s, moved, opened = min(dt_s, state.spin_left_s), means.copy(), np.empty_like(covariances)
     moved[:, HEADING] += state.spin_rad_s * turns_s
     for mode, (before, after) in enumerate(zip(means, moved, strict=True)):
-        swung_m = _turned(before[HEADING], lever_m) - _turned(after[HEADING], lever_m)
-        after[:2] += swung_m
+        (x_m, y_m), (to_x_m, to_y_m) = (turned(forward_m, left_m, one[HEADING]) for one in (before, after))
+        after[:2] += x_m - to_x_m, y_m - to_y_m
         F = np.eye(SIZE)
-        F[:2, HEADING] = -swung_m[1], swung_m[0]
+        F[:2, HEADING] = to_y_m - y_m, x_m - to_x_m
         opened[mode] = F @ covariances[mode] @ F.T
     opened[:, HEADING, HEADING] += (_ERRS_SHARE * state.spin_rad_s) ** 2 * turns_s
     left_s = state.spin_left_s - turns_s
@@ -94,17 +97,11 @@ def _spin_told(state: ImmState, yaw_rate: Measurement, slow_m_s: float) -> float
     expected, H = observe(YAW_RATE, x, _NO_LEVER, True)
     told_rad_s = float(yaw_rate.value[0])
     off_rad_s = told_rad_s - float(expected[0])
-    variance = float((H @ P @ H.T)[0, 0] + yaw_rate.covariance[0, 0])
+    variance = float(carried_through(H, P)[0, 0] + yaw_rate.covariance[0, 0])
     is_curve = abs(float(expected[0])) > _EXPLAINED_MAX * abs(told_rad_s)
     return 0.0 if is_curve or off_rad_s**2 <= _STDS**2 * max(variance, 0.0) else off_rad_s
 
 
-def _lever_m(state: ImmState, config: ImmConfig, numbers: Numbers) -> Array:
-    """Return the lever from the antenna to the pad (4,) in V; while the heading is unknown it has no direction."""
-    return numbers.lever_m if is_heading_known(state, config) else _NO_LEVER
-
-
-def _turned(heading_rad: float, lever_m: Array) -> Array:
-    """Return the lever's horizontal part (2,) in W."""
-    c, s = math.cos(heading_rad), math.sin(heading_rad)
-    return np.array([c * lever_m[0] - s * lever_m[1], s * lever_m[0] + c * lever_m[1]])
+def _lever_m(state: ImmState, config: ImmConfig, numbers: Numbers) -> tuple[float, float]:
+    """Return the lever from the antenna to the pad, forward and left; 0 while the heading that turns it is unknown."""
+    return (numbers.lever_m[0], numbers.lever_m[1]) if is_heading_known(state, config) else (0.0, 0.0)

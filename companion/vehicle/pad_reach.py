@@ -58,7 +58,7 @@ def frames_apart_m2(pad: PadPath) -> Array:
 
 
 def placed_std_m(pad: PadPath) -> Array:
-    """Return the standard deviation (3,) of the pad's place in W now, where frames that count as one are nearly one."""
+    """Return the standard deviation (3,) of the pad's place in W now, without the doubt of frames that count as one."""
     return np.asarray(np.sqrt(np.maximum(pad.position_std_m[0] ** 2 - frames_apart_m2(pad), 0.0)))
 
 

@@ -5,7 +5,6 @@ a thread of its own. So a stream's stamp may be a second old when the program is
 it is read: who goes on sending is past that before the program is back.
 """
 
-import os
 import time
 from pathlib import Path
 from typing import Annotated
@@ -14,6 +13,7 @@ import msgspec
 
 from link.errors import UserError
 from link.mavlink.signing import Signing, Streams, read_key, signing_timestamp
+from link.program.whole_file import replace_file
 from link.recording.recorder import BackgroundRecorder
 
 _PERIOD_NS = 1_000_000_000
@@ -104,16 +104,8 @@ class _File:
         self._path = path
 
     def write(self, record: _Kept) -> None:
-        """Replace the file as a whole: a computer that is switched off leaves the old one or the new one.
-
-        The new one is on the disk before it takes the other's name, or it could be empty after that.
-        """
-        new = self._path.with_name(f"{self._path.name}.new")
-        with new.open("wb") as file:
-            file.write(msgspec.json.encode(record))
-            file.flush()
-            os.fsync(file.fileno())
-        new.replace(self._path)
+        """Replace the file as a whole."""
+        replace_file(self._path, msgspec.json.encode(record))
 
     def close(self) -> None:
         """Nothing is open."""

@@ -40,7 +40,7 @@ def test_sortie_launches_from_a_pad_that_drives_off_and_lands_on_it(
     firmware: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # The firmwares' simulations measure from their feet, the stand-in from its centre of mass.
-    monkeypatch.setitem(flying._RANGE_FINDER, "height_m", GEAR_HEIGHT_M)  # noqa: SLF001
+    monkeypatch.setitem(flying._RANGE_FINDER, "height_m", GEAR_HEIGHT_M)  # noqa: SLF001 (a fact of the simulator)
     monkeypatch.setattr(script, "HELD_S", 14.0)
     monkeypatch.setattr(score, "HELD_S", 14.0)
     monkeypatch.setattr(script, "_AWAY_M", 30.0)

@@ -16,7 +16,7 @@ _PLACE_STD_MIN_M = 0.02  # of a receiver with corrections
 _CHANGE_S = 0.1  # between two changes of speed that `Driving` keeps
 _PRIOR_DRIVEN_S = 2.0  # what the estimator believes of drivers counts as one such change, which is over 2 s
 _OWN_HEIGHT_STD_M = 0.05  # of the drone's height beside the vehicle's: receivers with corrections, or a range finder
-_OWN_CLIMB_STD_M_S = 0.07  # of its rate, gusts included: 240 contacts in worlds sank by 0.06 m/s other than forecast
+_OWN_CLIMB_STD_M_S = 0.07  # of its rate, gusts included: 208 contacts in worlds sank by 0.06 m/s other than forecast
 # What a deck's velocity turns out to be sooner than this before the contact the drone makes up for: setpoints and data
 # are late by 0.15 s, and half of the vertical acceleration is there after another 0.15 s.
 _CLIMB_FOLLOWED_S = 0.5

@@ -25,15 +25,22 @@ def test_values_from_before_stay_where_their_file_cannot_be_written_anew(
     path = tmp_path / "before.json"
     keep(path, {"A": 1.0})
 
-    def full(file: Path, text: str, encoding: str) -> int:
-        file.write_bytes(text.encode(encoding)[:3])
+    def full(_: int) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(Path, "write_text", full)
+    monkeypatch.setattr("os.fsync", full)
     with pytest.raises(UserError, match="No space left"):
         keep(path, {"B": 2.0})
     assert read_kept(path) == {"A": 1.0}
     assert list(tmp_path.iterdir()) == [path]
+
+
+@pytest.mark.parametrize("place", ["none/before.json", "file/before.json", "before.json/"])
+def test_place_for_the_values_that_is_none_is_told(place: str, tmp_path: Path) -> None:
+    (tmp_path / "file").touch()
+    (tmp_path / "before.json").mkdir()
+    with pytest.raises(UserError, match="before"):
+        keep(tmp_path / place, {"A": 1.0})
 
 
 @pytest.mark.parametrize("text", ["", "[1]", '{"A": "x"}', '{"A": NaN}', '{"A": null}'])

@@ -119,6 +119,19 @@ def test_limit_of_all_files_counts_those_of_earlier_starts(tmp_path: Path) -> No
     assert min(numbers) > 1
 
 
+def _lost(recording: McapRecording, indices: range) -> int:
+    """Add messages; return how many were lost."""
+    lost = 0
+    for index in indices:
+        try:
+            recording.add(_setpoint(index), index)
+        except RecordsLost as error:
+            lost += error.count
+        except OSError:
+            lost += 1
+    return lost
+
+
 @pytest.mark.slow
 def test_write_that_fails_is_told_and_leaves_a_readable_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     whole = mcap_writer._WholeRecords.write  # noqa: SLF001 (where a disk fills up)
@@ -130,14 +143,7 @@ def test_write_that_fails_is_told_and_leaves_a_readable_file(tmp_path: Path, mon
 
     monkeypatch.setattr(mcap_writer._WholeRecords, "write", full_at_50_kb)  # noqa: SLF001 (where a disk fills up)
     recording = McapRecording(RecordingSpec(folder=tmp_path, stem="test"))
-    lost = 0
-    for index in range(20_000):
-        try:
-            recording.add(_setpoint(index), index)
-        except RecordsLost as error:
-            lost += error.count
-        except OSError:
-            lost += 1
+    lost = _lost(recording, range(20_000))
     recording.close()
     files = recording_files(tmp_path, "test")
     assert lost > 1_000
@@ -156,15 +162,11 @@ def test_recording_goes_on_once_a_full_disk_has_room_again(tmp_path: Path, monke
 
     monkeypatch.setattr(mcap_writer._WholeRecords, "write", write)  # noqa: SLF001 (where a disk fills up)
     recording = McapRecording(RecordingSpec(folder=tmp_path, stem="test"))
-    lost = 0
-    for index in range(40_000):
-        is_full = 10_000 <= index < 30_000
-        try:
-            recording.add(_setpoint(index), index)
-        except RecordsLost as error:
-            lost += error.count
-        except OSError:
-            lost += 1
+    lost = _lost(recording, range(10_000))
+    is_full = True
+    lost += _lost(recording, range(10_000, 30_000))
+    is_full = False
+    lost += _lost(recording, range(30_000, 40_000))
     recording.close()
     assert 15_000 < lost < 25_000
     assert sum(1 for _ in read_messages(recording_files(tmp_path, "test"))) == 40_000 - lost

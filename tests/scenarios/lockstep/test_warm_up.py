@@ -75,23 +75,54 @@ def test_two_processes_that_share_the_work_leave_nothing_to_compile() -> None:
     assert 0 < of_the_estimator < of_both == of_a_step
 
 
-_FLIGHT = """
+_PREPARED = """
 import sys
 from link.compiled import _kept_kernels
-from scenarios.campaigns.cells import draw, load_cell
-from scenarios.lockstep.lockstep import Lockstep
 
 def prepared():
     return {(kernel.py_func.__module__, kernel.py_func.__name__, str(one)) for kernel, _ in _kept_kernels
             for one in kernel.signatures}
 
+def tell_new(before):
+    for module, name, _ in sorted(prepared() - before):
+        print(module, name)
+"""
+_FLIGHT = (
+    _PREPARED
+    + """
+from scenarios.campaigns.cells import draw, load_cell
+from scenarios.lockstep.lockstep import Lockstep
+
 flight = Lockstep(draw(load_cell(sys.argv[1]), 3).scenario, 3)
 flight.step()
 before = prepared()
 flight.run()
-for module, name, _ in sorted(prepared() - before):
-    print(module, name)
+tell_new(before)
 """
+)
+_SPIN = (
+    _PREPARED
+    + """
+import numpy as np
+from companion.config.estimation import EstimatorConfig
+from companion.core.data import Measurement, Quantity
+from companion.vehicle.factory import make_estimator
+
+estimator, memory = make_estimator(EstimatorConfig()), None
+before = prepared()
+for i in range(100):
+    told = {Quantity.POSITION: [0.0] * 3, Quantity.VELOCITY: [0.0] * 3, Quantity.HEADING: [0.0]}
+    told[Quantity.YAW_RATE] = [0.5 if i > 50 else 0.0]
+    memory = estimator.fuse(memory, [
+        Measurement(t_ns=i * 10**8, quantity=one, value=np.array(value), covariance=1e-4 * np.eye(len(value)))
+        for one, value in told.items()
+    ])
+    estimator.forecast(memory, i * 10**8, np.array([0.0, 1.0]))
+spin_rad_s = memory.newest.state.spin_rad_s
+print("" if spin_rad_s else "it does not turn", end="")
+tell_new(before)
+"""
+)
 
 
 @pytest.mark.parametrize(
@@ -105,4 +136,9 @@ for module, name, _ in sorted(prepared() - before):
 def test_no_step_of_a_flight_compiles_or_loads_a_kernel(cell: str) -> None:
     """A kernel that is new in a flight is compiled in it after an update: the companion is silent for a second."""
     told = subprocess.run([sys.executable, "-c", _FLIGHT, cell], capture_output=True, text=True, check=True).stdout
+    assert told == ""
+
+
+def test_no_turn_on_the_spot_compiles_or_loads_a_kernel() -> None:
+    told = subprocess.run([sys.executable, "-c", _SPIN], capture_output=True, text=True, check=True).stdout
     assert told == ""
