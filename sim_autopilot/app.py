@@ -57,7 +57,7 @@ _ConfigOption = Annotated[Path | None, typer.Option("--config", metavar="FILE", 
 _PrintConfigOption = Annotated[bool, typer.Option("--print-config", help="Print the configuration and end.")]
 
 
-@app.callback(invoke_without_command=True)
+@app.command()
 def sim_autopilot(
     *,
     mavlink: _MavlinkOption = None,

@@ -55,6 +55,11 @@ class PadSource:
             return None
         return PadGeometry(size_m=pad.size_m, height_m=pad.height_m, antenna_to_pad_m=lever)
 
+    def answer(self) -> bytes | None:
+        """Return the pad as a payload, None while it is not known; empty, and so bad, if no vehicle has such a pad."""
+        pad = self.geometry()
+        return None if pad is None else changed(lambda _: json_messages.encode(pad), b"")
+
     def _learn(self, payload: bytes) -> None:
         try:
             told = foreign.transforms_of(payload)
@@ -141,9 +146,9 @@ class Ros2Session(ZenohSession):
         if key != self._keys.pad or self._pad is None:
             return super().ask(key, payload, timeout_s)
         inbox = Inbox(capacity=1, wake_up=self.wake_up)
-        pad = self._pad.geometry()
-        if pad is not None:
-            inbox.put(Sample(key, json_messages.encode(pad), self._receive_clock_ns()))
+        answer = self._pad.answer()
+        if answer is not None:
+            inbox.put(Sample(key, answer, self._receive_clock_ns()))
         return inbox
 
     def serve_later(self, key: str, take: Callable[[bytes, Callable[[bytes], None]], None]) -> None:

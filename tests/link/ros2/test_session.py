@@ -3,6 +3,7 @@
 import struct
 import time
 from collections.abc import Callable, Iterator
+from contextlib import closing
 from pathlib import Path
 
 import pytest
@@ -12,11 +13,14 @@ import zenoh.ext
 from link.errors import UserError
 from link.messages import CommandReply, Fix, PadGeometry
 from link.payloads import cdr, json_messages
+from link.payloads.checks import PayloadError
 from link.ros2.attachment import publisher_id
 from link.ros2.layout import open_layout
 from link.ros2.options import Ros2Options, ros2_options
 from link.ros2.ros_node import read_graph
-from link.ros2.session import Ros2Session, open_ros2_session
+from link.ros2.session import PadSource, Ros2Session, open_ros2_session
+from link.ros2.topic_map import PadTopics
+from link.zenoh.inbox import Inbox, WakeUp
 from link.zenoh.keys import Keys
 from link.zenoh.session import Sample, ZenohOptions, open_session
 from tests.link.ros2.test_foreign import transform
@@ -165,6 +169,19 @@ def test_pad_comes_from_latched_transforms(
     del held
     assert answers[0].size_m == (1.2, 1.4)
     assert answers[0].antenna_to_pad_m == pytest.approx((0.7, 0.2, -0.3))
+
+
+def test_transforms_of_no_vehicle_are_a_bad_answer_and_end_nothing() -> None:
+    told = [transform("base_link", "gnss", (0.0, 0.0, 0.0)), transform("base_link", "landing_pad", (300.0, 0.0, 0.0))]
+    with closing(WakeUp()) as wake_up:
+        transforms = Inbox(capacity=1, wake_up=wake_up)
+        source = PadSource(PadTopics(size_m=(1.2, 1.4), height_m=1.6, antenna_frame="gnss"), transforms)
+        assert source.answer() is None
+        transforms.put(Sample("tf_static", TFMessage(told).serialize(), 0))
+        answer = source.answer()
+    assert answer is not None
+    with pytest.raises(PayloadError):
+        json_messages.decode(PadGeometry, answer)
 
 
 def test_command_is_a_trigger_service_that_answers_with_the_callers_number(
