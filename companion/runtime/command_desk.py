@@ -28,6 +28,8 @@ _FIRST_TO_LAST = (
 )
 _WAITING_MAX = 64  # of each command; who comes when so many ask for the same hears nothing, and asks again
 _WAIT_MAX_S = 2.0  # less than an operator's query waits
+_ORDER_BYTES_MAX = 1024  # a station with all its digits takes a tenth; decoding 1 MB of names would stop the setpoints
+_TOO_LARGE = CommandReply(accepted=False, reason=f"an order has {_ORDER_BYTES_MAX} bytes at most")
 _LATE = CommandReply(accepted=False, reason="the companion made no step in time")
 _REPLACED = CommandReply(accepted=False, reason="another follow came at the same time: ask again")
 
@@ -55,6 +57,9 @@ class CommandDesk:
 
     def take(self, payload: bytes, reply: Reply) -> None:
         """Take a query, which is answered by `reply`, at once or after a step; called from a thread of Zenoh's."""
+        if len(payload) > _ORDER_BYTES_MAX:
+            reply(json_messages.encode(_TOO_LARGE))
+            return
         try:
             order = json_messages.decode(Order, payload)
         except PayloadError as error:

@@ -26,6 +26,7 @@ from link.program.clock import Clock, ClockTick, SimulatedClock, SystemClock, sp
 from link.program.service import Service
 from link.recording.log import Log
 from link.recording.recorder import BackgroundRecorder, Recorder
+from link.zenoh.inbox import SENSOR_BYTES_MAX
 from link.zenoh.pad_question import PadQuestion
 
 _WAIT_MAX_S = 0.005  # for bytes; Zenoh samples wait no longer than this
@@ -75,8 +76,8 @@ class _Loop:
         self._service = Service()
         self._desk = CommandDesk()
         self._timings = Timings()
-        self._inbox = zenoh.subscribe(keys.fix)
-        self._inboxes = [self._inbox, *(zenoh.subscribe(key) for key in (keys.fix_velocity, keys.imu, keys.pad_pose))]
+        told = (keys.fix, keys.fix_velocity, keys.imu, keys.pad_pose)
+        self._inboxes = [zenoh.subscribe(key, sample_bytes_max=SENSOR_BYTES_MAX) for key in told]
         self._ticks = zenoh.subscribe(keys.clock) if options.use_sim_time else None
         self._alive = zenoh.watch_alive(keys.alive)
         self._claims = Claims(zenoh, keys)
@@ -173,7 +174,7 @@ class _Loop:
     def _take_samples(self) -> None:
         for inbox in self._inboxes:
             for sample in inbox.take():
-                self._fix_seen = self._fix_seen or inbox is self._inbox
+                self._fix_seen = self._fix_seen or inbox is self._inboxes[0]
                 self._node.receive_sample(sample.key, sample.payload)
         self._node.receive_liveliness(alive=self._alive.alive)
         self._node.receive_rival(self._claims.rival)

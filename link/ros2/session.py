@@ -118,12 +118,19 @@ class Ros2Session(ZenohSession):
             return super().is_heard(key, encoding)
         return self._ros_publisher(route).is_heard
 
-    def subscribe(self, key: str, *, capacity: int = INBOX_CAPACITY, bytes_max: int | None = None) -> Inbox:
+    def subscribe(
+        self,
+        key: str,
+        *,
+        capacity: int = INBOX_CAPACITY,
+        bytes_max: int | None = None,
+        sample_bytes_max: int | None = None,
+    ) -> Inbox:
         """Return the inbox of all that is published on `key`, or on its topic; the samples carry `key`."""
         route = self._routes.get(key)
         if route is None:
-            return super().subscribe(key, capacity=capacity, bytes_max=bytes_max)
-        inbox = Inbox(capacity=capacity, wake_up=self.wake_up, bytes_max=bytes_max)
+            return super().subscribe(key, capacity=capacity, bytes_max=bytes_max, sample_bytes_max=sample_bytes_max)
+        inbox = Inbox(capacity=capacity, wake_up=self.wake_up, bytes_max=bytes_max, sample_bytes_max=sample_bytes_max)
         self._held.append(
             self._session.declare_subscriber(
                 self._node.data_key(route.endpoint), self._into(inbox, key, route.from_ros)

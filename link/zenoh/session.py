@@ -66,9 +66,16 @@ class ZenohSession:
         """Return whether anybody subscribes to `key` now; `encoding` as it is published there."""
         return is_matched(self._publisher(key, encoding))
 
-    def subscribe(self, key: str, *, capacity: int = INBOX_CAPACITY, bytes_max: int | None = None) -> Inbox:
+    def subscribe(
+        self,
+        key: str,
+        *,
+        capacity: int = INBOX_CAPACITY,
+        bytes_max: int | None = None,
+        sample_bytes_max: int | None = None,
+    ) -> Inbox:
         """Return the inbox of all that is published on `key`, which may hold wildcards."""
-        inbox = Inbox(capacity=capacity, wake_up=self.wake_up, bytes_max=bytes_max)
+        inbox = Inbox(capacity=capacity, wake_up=self.wake_up, bytes_max=bytes_max, sample_bytes_max=sample_bytes_max)
 
         def receive(sample: zenoh.Sample) -> None:
             if inbox.has_room(len(sample.payload)):

@@ -16,6 +16,11 @@ _QUERY_S = 20.0
 _FLOOD_QUERY_S = 3.0
 
 
+def order_of_many_names() -> bytes:
+    """Return an order of 0.9 MB, as much as Zenoh takes, whose names are all unknown but one."""
+    return b'{"command": "hold", %s}' % b", ".join(b'"%d": 0' % name for name in range(80_000))
+
+
 class Flood:
     """A command asked for by one client, many times a second, until the end of a `with` block."""
 

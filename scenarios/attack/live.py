@@ -19,7 +19,7 @@ from link.zenoh.keys import Keys
 from link.zenoh.session import ZenohOptions, ZenohSession, open_session
 from scenarios.attack.attempt import Attempt
 from scenarios.attack.crafted import CRAFTED, datagram_of
-from scenarios.attack.flood import ANSWER_MAX_S, FLOOD_HZ, Flood, ask
+from scenarios.attack.flood import ANSWER_MAX_S, FLOOD_HZ, Flood, ask, order_of_many_names
 from scenarios.attack.spoofs import SPOOFS, Now
 
 _FIRST_S = 10.0  # for the first status
@@ -33,6 +33,7 @@ _ORDER_S = 2.0
 _BOOT_MS = 60_000
 _BATTERY_LOST = 0.5  # the forged one has a hundredth left
 _NOTHING = "changes nothing"
+_GOES_ON = f"the status goes on within {_GAP_MAX_S:g} s"
 
 
 class Watch:
@@ -107,7 +108,9 @@ def attempts(options: ZenohOptions, keys: Keys, *, device: str | None, stranger:
                 raise UserError("the companion hears no autopilot: connect it, for until then anybody may pose as one")
             transport = stack.enter_context(open_transport(device))
             yield from _by_mavlink(transport, watch)
-        yield _by_flood(zenoh, stack.enter_context(open_session(options)), keys)
+        client = stack.enter_context(open_session(options))
+        yield _by_large_orders(client, keys, watch)
+        yield _by_flood(zenoh, client, keys)
 
 
 def _by_stranger(endpoint: str, keys: Keys) -> Attempt:
@@ -131,13 +134,15 @@ def _by_mavlink(transport: Transport, watch: Watch) -> Iterator[Attempt]:
         transport.send(MavlinkCodec(1, 1).encode(spoof(Now(boot_ms=_BOOT_MS, utc_us=time.time_ns() // 1000))))
         seen = _difference(before, watch.after(_STATUSES))
         yield Attempt(by=by, what=f"forges {name}", expected=_NOTHING, seen=seen)
-    expected = f"the status goes on within {_GAP_MAX_S:g} s"
     for kind in CRAFTED:
         for _ in range(_REPEATS):
             transport.send(datagram_of(kind))
-        gap_s = watch.longest_gap_s(_LISTENS_S)
-        seen = expected if gap_s < _GAP_MAX_S else f"the status stops for {gap_s:.1f} s"
-        yield Attempt(by=by, what=f"{_REPEATS} datagrams of {kind}", expected=expected, seen=seen)
+        yield Attempt(by=by, what=f"{_REPEATS} datagrams of {kind}", expected=_GOES_ON, seen=_goes_on(watch))
+
+
+def _goes_on(watch: Watch) -> str:
+    gap_s = watch.longest_gap_s(_LISTENS_S)
+    return _GOES_ON if gap_s < _GAP_MAX_S else f"the status stops for {gap_s:.1f} s"
 
 
 def _difference(before: LandingStatus, after: LandingStatus) -> str:
@@ -145,6 +150,14 @@ def _difference(before: LandingStatus, after: LandingStatus) -> str:
     if (before.battery_share or 0.0) - (after.battery_share or 0.0) > _BATTERY_LOST:
         changed.append("battery_share")
     return f"changes {', '.join(changed)}" if changed else _NOTHING
+
+
+def _by_large_orders(client: ZenohSession, keys: Keys, watch: Watch) -> Attempt:
+    order = order_of_many_names()
+    for _ in range(_REPEATS):
+        client.ask(keys.landing_command, order, _ORDER_S)
+    what = f"{_REPEATS} orders of {len(order) / 1e6:.1f} MB"
+    return Attempt(by="Zenoh, operator's rights", what=what, expected=_GOES_ON, seen=_goes_on(watch))
 
 
 def _by_flood(operator: ZenohSession, client: ZenohSession, keys: Keys) -> Attempt:

@@ -65,6 +65,16 @@ def test_of_two_stations_at_once_the_later_is_followed(node: CompanionNode, aske
     assert asked == [Command.FOLLOW]
 
 
+def test_an_order_that_no_operator_writes_is_refused_unread(node: CompanionNode, asked: list[Command]) -> None:
+    desk = CommandDesk()
+    refused = Asker(desk, b'{"command": "abort"' + b" " * 1024 + b"}").reply()
+    assert refused is not None
+    assert not refused.accepted
+    assert refused.reason == "an order has 1024 bytes at most"
+    desk.pass_on(node, 1)
+    assert asked == []
+
+
 def test_reply_goes_to_who_asked(node: CompanionNode, asked: list[Command]) -> None:
     desk = CommandDesk()
     asker = Asker(desk, Command.START)
