@@ -23,11 +23,8 @@ class LevelConfig(StrictModel):
 
     height_m: NotNegative = 0.08
     late_stds: NotNegative = 1.5  # of the link's delay, by which it begins earlier: so late a setpoint may be
-    # By so much of the pad's own acceleration, between these: what it turns more makes the contact slower than tilted,
-    # and there is no time for what else would have it lean.
-    share: Annotated[float, Field(ge=0.0, le=1.0)] = 0.6
-    acceleration_min_m_s2: Positive = 0.6  # 3.5 degrees
-    acceleration_max_m_s2: Positive = 1.6  # 9 degrees; S2 allows 10 over trim
+    # Beyond steady flight. S2 allows 10 degrees, 1.7 m/s^2: less by a gust of 3 m/s, which is taken for steady flight.
+    acceleration_m_s2: Positive = 1.0
     speed_max_m_s: Positive = 0.35  # that this may bring against the pad; S2 asks for 0.5 at contact
 
 

@@ -62,7 +62,7 @@ def _contact_at(step: int, height_m: float, sink_m_s: float, steps: int) -> int:
 
 @compiled_kernel
 def _levels(foot_m: float, sink_m_s: float, leans_m_s2: float, drone: Follower) -> bool:
-    """Return whether a drone levels whose lowest foot is so high, and which leans so much beyond steady flight."""
+    """Return whether a drone levels whose lowest foot is so high, and which leans so much."""
     early_m = max(sink_m_s, 0.0) * max(leans_m_s2 - drone.level_m_s2, 0.0) / drone.jerk_max_m_s3
     return foot_m < drone.level_below_m + early_m
 
@@ -88,7 +88,7 @@ def _fly(path: Array, samples: Samples, sample: int, descent: Descent, out: Arra
     model, state = course.model.copy(), samples.deviation[sample].copy()
     known, off, expected, lean = np.zeros((3, 2)), np.empty((2, 2)), np.empty(2), np.empty(2)
     before_m_s2, held, waited = np.empty(2), course.air_enu_m_s2 + state[3], 0
-    holds, beside, trims_m_s2 = np.empty(2), np.empty(2), math.hypot(course.air_enu_m_s2[0], course.air_enu_m_s2[1])
+    holds, beside = np.empty(2), np.empty(2)
     # By another sample's numbers than those of its gusts, and so independent of them.
     error, others = path[0, :2].copy(), samples.pushes[sample - 1]
     left = math.exp(-drone.relearns_hz * DT_S)
@@ -120,9 +120,9 @@ def _fly(path: Array, samples: Samples, sample: int, descent: Descent, out: Arra
             _touch(off, lean, sink_m_s + samples.vertical[sample, 1], course.air_enu_m_s2, out)
             return
         beside[:] = holds + GRAVITY_M_S2 * course.slope[_contact_at(k, height_m, sink_m_s, steps)]
-        more = expected + model[2] + beside - course.air_enu_m_s2
-        levels = _levels(height_m - lowest_m, sink_m_s, math.hypot(more[0], more[1]), drone)
-        most_m_s2 = trims_m_s2 + (drone.level_m_s2 if levels else GRAVITY_M_S2)
+        leans = expected + model[2] + beside
+        levels = _levels(height_m - lowest_m, sink_m_s, math.hypot(leans[0], leans[1]), drone)
+        most_m_s2 = drone.level_m_s2 if levels else drone.level_m_s2 + GRAVITY_M_S2
         before_m_s2[:] = model[2]
         bounds = (drone.jerk_max_m_s3, drone.acceleration_max_m_s2, most_m_s2)
         jerk = steer(model, state, off, known, drone) if k * DT_S >= samples.ahead_s[sample] else (0.0, 0.0)

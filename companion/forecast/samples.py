@@ -24,6 +24,7 @@ CONTACT, IN_S, ERROR, SPEED, SINK, TILT = range(6)
 class Follower(NamedTuple):
     """How the drone follows: gains and lags of its cascade, of its planner, and the limits of both.
 
+    A drone that levels, below `level_below_m`, leans by `level_m_s2` at most: thrust by mass, steady flight included.
     `led_share` is of a change of the acceleration asked for what the lean follows at once: 1 where setpoints are led.
     `way_s` is how long the planner's shortest way takes. The vehicle's velocity is known with an error of
     `error_std_m_s` along an axis, which becomes another one `relearns_hz` times a second. How the vehicle turns is told

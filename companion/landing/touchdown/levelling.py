@@ -60,13 +60,11 @@ def levelling_now(
     asked = np.zeros(2) if memory.model.reference is None else memory.model.reference.acceleration_enu_m_s2[:2]
     tracking = memory.model.tracking
     beside = tracking.holds_enu_m_s2 + GRAVITY_M_S2 * slope_at(pad, _to_contact_s(memory, relative, config))
-    kept_m_s2, below_m = level_end(pad, relative, inputs, config)
-    air = tracking.air_enu_m_s2
-    takes_s = max(math.hypot(*(asked + beside - air).tolist()) - kept_m_s2, 0.0) / limits.jerk_max_m_s3
+    most_m_s2, below_m = level_end(pad, relative, tracking.air_enu_m_s2, inputs, config)
+    takes_s = max(math.hypot(*(asked + beside).tolist()) - most_m_s2, 0.0) / limits.jerk_max_m_s3
     early_m = max(-relative.climb_m_s, 0.0) * (takes_s + inputs.ahead_s(config))
     if lowest_foot_m(situation, relative, config) > below_m + early_m + escape_m:
         return None
-    most_m_s2 = min(math.hypot(*air.tolist()) + kept_m_s2, limits.tilt_acceleration_m_s2)
     return Levelling(leans_max_m_s2=most_m_s2, beside_enu_m_s2=beside, jerk_max_m_s3=limits.jerk_max_m_s3)
 
 
@@ -77,21 +75,28 @@ def _to_contact_s(memory: StepMemory, relative: Approach, config: CompanionConfi
     return max(relative.height_m, 0.0) / max(-relative.climb_m_s, config.descent.sink.contact_rate_m_s)
 
 
-def level_end(pad: PadPath, relative: Approach, inputs: StepInputs, config: CompanionConfig) -> tuple[float, float]:
-    """Return how much a drone that levels leans beyond steady flight, m/s^2, and the lowest foot's height to begin.
+def level_end(
+    pad: PadPath, relative: Approach, air_enu_m_s2: Array, inputs: StepInputs, config: CompanionConfig
+) -> tuple[float, float]:
+    """Return how much a drone that levels leans at most, m/s^2, and the lowest foot's height to begin.
+
+    One that turns with the pad leans by the vector sum of that and of what holds against the air: a turn across the air
+    takes less lean than one along it. From that much it comes upright as far as the speed allows that this brings.
 
     Args:
         pad: that it lands on.
         relative: to it.
+        air_enu_m_s2: (2,) horizontal thrust by mass that holds against the air.
         inputs: of the step.
         config: the companion's.
     """
-    limits, touchdown = inputs.limits, config.touchdown
-    turns_m_s2 = math.hypot(*pad.acceleration_enu_m_s2[0, :2].tolist())
-    kept_m_s2 = min(_kept_m_s2(turns_m_s2, limits.jerk_max_m_s3, config), limits.acceleration_max_m_s2)
+    limits, level = inputs.limits, config.touchdown.level
+    steady_m_s2 = math.hypot(*air_enu_m_s2.tolist())
+    turning_m_s2 = math.hypot(*(pad.acceleration_enu_m_s2[0, :2] + air_enu_m_s2).tolist())
+    most_m_s2 = max(steady_m_s2 + level.acceleration_m_s2, turning_m_s2 - _less_m_s2(limits.jerk_max_m_s3, config))
     lag_s = 0.0 if inputs.response is None else inputs.response.cascade.lean_lag_s
-    early_m = max(-relative.climb_m_s, 0.0) * (lag_s + touchdown.level.late_stds * inputs.link_delay.std_s)
-    return kept_m_s2, touchdown.level.height_m + early_m
+    early_m = max(-relative.climb_m_s, 0.0) * (lag_s + level.late_stds * inputs.link_delay.std_s)
+    return min(most_m_s2, limits.tilt_acceleration_m_s2), level.height_m + early_m
 
 
 def levelled(flown: FlownPlan, levelling: Levelling) -> FlownPlan:
@@ -162,15 +167,12 @@ def lowest_foot_m(situation: Situation, relative: Approach, config: CompanionCon
     return height_m - lowest_foot(situation.drone, config.touchdown)[0]
 
 
-def _kept_m_s2(turns_m_s2: float, jerk_m_s3: float, config: CompanionConfig) -> float:
-    """Return what a level drone keeps of the pad's acceleration.
+def _less_m_s2(jerk_m_s3: float, config: CompanionConfig) -> float:
+    """Return by how much less than the pad a drone may turn.
 
     Turning less by x gains the drone x^2 / 2j against the pad while it changes, and x t in the time t that is left.
     That bounds x.
     """
-    touchdown = config.touchdown
-    left_s = touchdown.level.height_m / config.descent.sink.contact_rate_m_s
-    gained_m_s = touchdown.level.speed_max_m_s
-    less_m_s2 = math.sqrt((jerk_m_s3 * left_s) ** 2 + 2.0 * jerk_m_s3 * gained_m_s) - jerk_m_s3 * left_s
-    kept_m_s2 = max(touchdown.level.share * turns_m_s2, touchdown.level.acceleration_min_m_s2)
-    return max(min(kept_m_s2, touchdown.level.acceleration_max_m_s2), turns_m_s2 - less_m_s2)
+    level = config.touchdown.level
+    left_s = level.height_m / config.descent.sink.contact_rate_m_s
+    return math.sqrt((jerk_m_s3 * left_s) ** 2 + 2.0 * jerk_m_s3 * level.speed_max_m_s) - jerk_m_s3 * left_s

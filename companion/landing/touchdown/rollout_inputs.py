@@ -160,7 +160,8 @@ def follower_of(
     if inputs.response is None or situation.approach is None or situation.pad is None:
         raise ValueError("no autopilot flies to a pad")
     cascade, limits = inputs.response.cascade, inputs.limits
-    level_m_s2, level_below_m = level_end(situation.pad, situation.approach, inputs, config)
+    air_enu_m_s2 = memory.model.tracking.air_enu_m_s2
+    level_m_s2, level_below_m = level_end(situation.pad, situation.approach, air_enu_m_s2, inputs, config)
     return Follower(
         stiffness_per_s2=cascade.stiffness_per_s2,
         damping_per_s=cascade.damping_per_s,

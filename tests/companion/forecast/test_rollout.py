@@ -127,7 +127,7 @@ def test_a_drone_whose_setpoints_are_led_is_level_at_the_contact_where_another_s
         roll_out(samples(), leans._replace(drone=leans.drone._replace(led_share=share)), 0.1)[0, TILT]
         for share in (0.0, 1.0)
     )
-    level_rad = math.atan(1.5 / GRAVITY_M_S2) - math.atan(0.5 / GRAVITY_M_S2)  # air and 1 m/s^2, at the most
+    level_rad = math.atan(1.0 / GRAVITY_M_S2) - math.atan(0.5 / GRAVITY_M_S2)  # of 1 m/s^2 the air takes a half
     assert led < level_rad + 0.02
     assert as_it_comes > led + 0.03
 

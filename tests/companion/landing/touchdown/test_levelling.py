@@ -1,5 +1,7 @@
 """A drone is levelled so as not to touch down with one foot."""
 
+import math
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -24,7 +26,7 @@ from tests.companion.facts import NOW_NS, changed, drone_at, pad_at, situation
 CONFIG = CompanionConfig()
 LIMITS = CONFIG.limits.flight_limits()
 INPUTS = StepInputs(t_ns=NOW_NS, monotonic_ns=NOW_NS, limits=LIMITS)
-LEVEL_M_S2 = CONFIG.touchdown.level.acceleration_min_m_s2
+LEVEL_M_S2 = CONFIG.touchdown.level.acceleration_m_s2
 DESCENDS = changed(StepMemory(), phase=Phase.DESCEND)
 
 
@@ -50,16 +52,26 @@ def test_a_leaning_drone_is_levelled_as_much_higher_as_its_lowest_foot_hangs_dow
 
 
 @pytest.mark.parametrize(
-    ("turns_m_s2", "level_m_s2"),
-    [
-        (0.0, CONFIG.touchdown.level.acceleration_min_m_s2),
-        (1.25, CONFIG.touchdown.level.share * 1.25),
-        (2.8, CONFIG.touchdown.level.acceleration_max_m_s2),
-    ],
-    ids=["straight on", "a circle of 20 m at 5 m/s", "harder than it may lean"],
+    "turns_m_s2", [0.0, 1.25, 2.7], ids=["straight on", "20 m at 5 m/s", "harder than it may lean"]
 )
-def test_a_drone_above_a_turning_pad_is_levelled_by_a_share_of_that_turn(turns_m_s2: float, level_m_s2: float) -> None:
-    assert _levelled_m_s2(situation(0.05, pad=_turning(turns_m_s2))) == pytest.approx(level_m_s2)
+def test_a_drone_above_a_turning_pad_leans_no_more_than_it_may_beyond_steady_flight(turns_m_s2: float) -> None:
+    stiff = replace(LIMITS, jerk_max_m_s3=40.0)
+    assert _levelled_m_s2(situation(0.05, pad=_turning(turns_m_s2)), stiff) == pytest.approx(LEVEL_M_S2)
+
+
+@pytest.mark.parametrize(
+    ("air_enu_m_s2", "leans_m_s2"),
+    [((0.0, 0.0), 3.5), ((1.6, 1.2), math.hypot(2.0, 3.5)), ((1.2, -1.6), 5.5), ((-1.2, 1.6), 1.5)],
+    ids=["no air", "a turn across the air", "along it", "against it"],
+)
+def test_a_drone_comes_upright_from_the_lean_that_turn_and_air_take_together(
+    air_enu_m_s2: tuple[float, float], leans_m_s2: float
+) -> None:
+    air, facts = np.array(air_enu_m_s2), situation(0.05, pad=_turning(3.5))
+    less_m_s2 = 6.0 - _levelled_m_s2(situation(0.05, pad=_turning(6.0)))
+    levelled_m_s2 = _levelled_m_s2(facts, memory=_holding(air, air))
+    steady_m_s2 = math.hypot(*air_enu_m_s2)
+    assert levelled_m_s2 == pytest.approx(max(steady_m_s2 + LEVEL_M_S2, leans_m_s2 - less_m_s2))
 
 
 @given(turns_m_s2=st.floats(0.0, 9.0), jerk_m_s3=st.floats(2.0, 40.0))
