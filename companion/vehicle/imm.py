@@ -32,11 +32,11 @@ from companion.vehicle.imm_body import (
     told_modes,
     upright_modes,
 )
-from companion.vehicle.imm_frames import moved_frame, own_rate_opened_m2_s2, ranged_pad, wandering
+from companion.vehicle.imm_frames import moved_frame, own_rate_opened_m2_s2, ranged_pad, wandering, without_slow_error
 from companion.vehicle.imm_kernels import CURVATURE, HEADING
 from companion.vehicle.imm_mixing import Modes
 from companion.vehicle.imm_numbers import Deck, Numbers, noises_with, numbers_of, turns_as_modelled
-from companion.vehicle.imm_spin import spins, spun, without_spin
+from companion.vehicle.imm_spin import believed_spin_rad_s, spins, spun, without_spin
 from companion.vehicle.imm_state import (
     KINDS,
     OFFSET,
@@ -121,6 +121,7 @@ class ImmModel:
         if measurement.quantity is Quantity.POSITION:
             R, bias_variance = split_fix(R, self.config.receivers)
             white_variance = largest(R)
+            state = without_slow_error(state, bias_variance, self.config.receivers)
         if measurement.quantity is Quantity.HEADING:
             state = opened_unit(state, measurement)
         state, beside = without_spin(state, measurement, self.config, self.numbers)
@@ -172,7 +173,7 @@ class ImmModel:
             acceleration_enu_m_s2=told[6:],
             covariance=0.5 * (covariance + covariance.T),
             yaw_rad=wrapped(float(x[HEADING])) if known else None,
-            yaw_rate_rad_s=float(x[CURVATURE] * math.hypot(x[2], x[3])) + state.spin_rad_s if known else None,
+            yaw_rate_rad_s=float(x[CURVATURE] * math.hypot(x[2], x[3])) + believed_spin_rad_s(state) if known else None,
             mixture=Mixture(weight=state.modes[2], off=pad_off, covariance=pad_covariance),
         )
 

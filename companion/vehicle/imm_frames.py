@@ -6,11 +6,11 @@ import numpy as np
 
 from companion.config.estimation import ReceiversConfig
 from companion.core.data import Array, Measurement, Quantity
-from companion.vehicle.imm_kernels import HEADING
+from companion.vehicle.imm_kernels import CLOCK, HEADING
 from companion.vehicle.imm_numbers import Deck
 from companion.vehicle.imm_sensors import PAD, observe
 from companion.vehicle.imm_state import OFFSET, PLACE, ImmState, open_place_and_offset, open_states, seen_axes
-from companion.vehicle.imm_swing import PITCH, ROLL
+from companion.vehicle.imm_swing import PITCH, ROLL, SIZE
 from companion.vehicle.surface import pad_height_seen
 from link.records import replace
 
@@ -25,6 +25,37 @@ def wandering(state: ImmState, receivers: ReceiversConfig) -> tuple[float, float
     bias_m2_s = 2.0 * state.fix_bias_variance_m2 / receivers.fix_bias_time_s
     receiver_m2_s = receivers.frame_offset_walk_m2_s + bias_m2_s + _fine_walk_m2_s(state, receivers)
     return receiver_m2_s, receivers.own_walk_share * bias_m2_s, _own_rate_m2_s3(state, receivers)
+
+
+_ENDS_SHARE = 0.25  # of a slow error's variance: a receiver that states half of it has another kind of solution
+
+
+def without_slow_error(state: ImmState, bias_variance_m2: float, receivers: ReceiversConfig) -> ImmState:
+    """Return the state as a fix comes whose slow error is so much smaller that the one of before has ended.
+
+    The offset was that of the frames and the slow error in one. On an axis on which less is known of it than before any
+    fix, it begins anew, and the place is where the fixes have it, but for their error of before. Corrected fixes are
+    dated without an error, too.
+
+    Args:
+        state: before the fix.
+        bias_variance_m2: of the fix's slow error.
+        receivers: of both.
+    """
+    before_m2, anew_m2 = state.fix_bias_variance_m2, receivers.frame_offset_std_m**2 + bias_variance_m2
+    if bias_variance_m2 >= _ENDS_SHARE * before_m2:
+        return state
+    means, covariances, weights = state.modes
+    is_unknown = weights @ covariances[:, OFFSET, OFFSET] > anew_m2
+    place, offset = PLACE[is_unknown], OFFSET[is_unknown]
+    by_fixes = np.eye(SIZE)
+    by_fixes[place, offset], by_fixes[offset, offset] = -1.0, 0.0
+    if bias_variance_m2 == 0.0:
+        by_fixes[CLOCK, CLOCK] = 0.0
+    modes = (means @ by_fixes.T, by_fixes @ covariances @ by_fixes.T, weights)
+    means, covariances, weights = open_states(modes, place, np.full(len(place), before_m2))
+    anew = open_place_and_offset(covariances, np.diag(np.where(is_unknown, anew_m2, 0.0)))
+    return replace(state, modes=(means, anew, weights))
 
 
 def moved_frame(state: ImmState, step: Measurement, receivers: ReceiversConfig, placed_by: Quantity) -> ImmState:

@@ -152,3 +152,53 @@ def test_frame_that_steps_takes_a_vehicle_along_that_is_only_seen() -> None:
 def _offset(state: ImmState) -> float:
     means, _, weights = state.modes
     return float(np.abs((weights @ means)[OFFSET]).max())
+
+
+def _fix(t_s: float, std_m: float, value: Array) -> Measurement:
+    covariance = std_m**2 * np.eye(3)
+    return Measurement(t_ns=round(t_s * 1e9), quantity=Quantity.POSITION, value=value, covariance=covariance)
+
+
+def _driven(state: ImmState, std_m: float, lasts_s: float) -> ImmState:
+    """After fixes at 10 Hz of a vehicle that stands where it is, of which the receiver states so much error."""
+    model, rng = ImmModel(config=ImmConfig(), deck=Deck()), np.random.default_rng(5)
+    for step in range(round(10 * lasts_s)):
+        state = model.predict(state, 0.1)
+        update = model.update(state, _fix(0.1 * step, std_m, rng.normal(0.0, FIX_STD_M, 3)))
+        assert update is not None
+        state = update.state
+    return state
+
+
+def _frames_apart(state: ImmState) -> tuple[Array, Array]:
+    means, covariances, weights = state.modes
+    return weights @ means[:, OFFSET], weights @ covariances[:, OFFSET, OFFSET]
+
+
+@pytest.mark.parametrize(("coarse_m", "lasts_s"), [(2.5, 0.1), (2.5, 60.0), (1.2, 30.0), (20.0, 6.0)])
+def test_a_receiver_that_comes_to_be_corrected_leaves_the_frames_as_apart_as_before_any_fix(
+    coarse_m: float, lasts_s: float
+) -> None:
+    state = _driven(_driven(_started(coarse_m), coarse_m, lasts_s), FIX_STD_M, 3.0)
+    mean_m, variance_m2 = _frames_apart(state)
+    assert np.abs(mean_m).max() < 0.1
+    assert variance_m2 == pytest.approx(np.full(3, RECEIVERS.frame_offset_std_m**2), rel=0.1)
+    assert np.abs((state.modes[2] @ state.modes[0])[:2]).max() < 0.05
+    assert state.modes[1][:, 15, 15].max() == 0.0  # corrected fixes are dated without an error
+
+
+def test_an_offset_that_sightings_told_outlasts_an_outage_of_the_corrections() -> None:
+    model = ImmModel(config=ImmConfig(), deck=Deck())
+    seen = model.update(_started(), replace(_sighting(), value=np.array([0.4, -0.3, 0.1])))
+    assert seen is not None
+    mean_m, variance_m2 = _frames_apart(_driven(_driven(seen.state, 0.8, 4.0), FIX_STD_M, 2.0))
+    assert mean_m[:2] == pytest.approx([0.4, -0.3], abs=0.25)
+    assert variance_m2[:2].max() < 0.3 * RECEIVERS.frame_offset_std_m**2
+
+
+def test_stated_errors_that_flicker_teach_nothing() -> None:
+    steady = flickers = _started(0.8)
+    for _ in range(20):
+        steady = _driven(_driven(steady, 0.8, 0.2), 0.8, 0.2)
+        flickers = _driven(_driven(flickers, 0.8, 0.2), 0.7, 0.2)
+    assert _frames_apart(flickers)[1] == pytest.approx(_frames_apart(steady)[1], rel=0.05)

@@ -1,13 +1,14 @@
 """A vehicle that turns on the spot: its heading follows its gyro, and no reading ends the filter."""
 
 import math
+from collections.abc import Callable
 from typing import cast
 
 import numpy as np
 import pytest
 
 from companion.config.estimation import EstimatorKind, ImmConfig
-from companion.core.data import Measurement, Quantity
+from companion.core.data import Forecast, Measurement, Quantity
 from companion.vehicle.estimator import DelayBuffer, EstimatorMemory
 from companion.vehicle.filter_step import std_of
 from companion.vehicle.imm import ImmModel
@@ -110,30 +111,70 @@ def test_rover_that_ends_a_tight_arc_and_speeds_up_has_not_turned_on_the_spot(se
         assert abs(wrap_angle(float(forecast.yaw_rad[0]) - rover.at(t_s)[2])) < 0.5
 
 
-@pytest.mark.parametrize("rate_rad_s", [0.5, 2.0, 6.0])
-@pytest.mark.parametrize("std_rad_s", [0.001, 0.02])
-@pytest.mark.parametrize("seed", range(3))
-def test_gyro_that_contradicts_a_parked_vehicles_heading_ends_nothing(
-    rate_rad_s: float, std_rad_s: float, seed: int
-) -> None:
-    """Such as one that tells degrees for radians."""
+def parked(
+    gyro_rad_s: Callable[[float], float],
+    lasts_s: float,
+    seed: int,
+    *,
+    gyro_std_rad_s: float = 0.003,
+    heading_every: int = 1,
+) -> list[Forecast]:
+    """Return what is forecast, 50 times a second, of a parked vehicle that heads east and whose gyro tells this."""
     chosen, rng = estimator(IMM), np.random.default_rng(seed)
     memory: EstimatorMemory | None = None
+    forecasts = []
 
     def told(quantity: Quantity, t_s: float, value: list[float], std: float) -> Measurement:
         noisy = np.array(value) + rng.normal(0.0, std, len(value))
         return Measurement(t_ns=now_ns(t_s), quantity=quantity, value=noisy, covariance=std**2 * np.eye(len(value)))
 
-    for step in range(300):
+    for step in range(round(50 * lasts_s)):
         t_s = step / 50
-        readings = [told(Quantity.HEADING, t_s, [0.0], 0.02), told(Quantity.YAW_RATE, t_s, [rate_rad_s], std_rad_s)]
+        readings = [told(Quantity.YAW_RATE, t_s, [gyro_rad_s(t_s)], gyro_std_rad_s)]
+        if step % heading_every == 0:
+            readings.append(told(Quantity.HEADING, t_s, [0.0], 0.02))
         if step % 5 == 0:
             readings.append(told(Quantity.POSITION, t_s, [0.0, 0.0, 0.0], 0.02))
             readings.append(told(Quantity.VELOCITY, t_s, [0.0, 0.0, 0.0], 0.05))
         memory = chosen.fuse(memory, readings)
         forecast = chosen.forecast(memory, now_ns(t_s), np.array([0.0, 1.0]))
         assert forecast is not None
-        assert np.isfinite(forecast.position_std_m).all()
+        forecasts.append(forecast)
+    return forecasts
+
+
+@pytest.mark.parametrize("rate_rad_s", [0.5, 2.0, 6.0])
+@pytest.mark.parametrize("std_rad_s", [0.001, 0.02])
+@pytest.mark.parametrize("seed", range(3))
+def test_gyro_that_contradicts_a_parked_vehicles_heading_ends_nothing(
+    rate_rad_s: float, std_rad_s: float, seed: int
+) -> None:
+    """Such as one that tells degrees for radians; there is no heading to land by until the two agree."""
+    forecasts = parked(lambda _: rate_rad_s, 6.0, seed, gyro_std_rad_s=std_rad_s)
+    assert all(np.isfinite(forecast.position_std_m).all() for forecast in forecasts)
+    assert forecasts[-1].yaw_rad is None
+
+
+def test_one_yaw_rate_that_no_vehicle_turns_by_is_an_outlier() -> None:
+    forecasts = parked(lambda t_s: 0.5 if t_s in (4.0, 6.0) else 0.0, 8.0, 1)[100:]
+    yaws_rad = [forecast.yaw_rad[0] for forecast in forecasts if forecast.yaw_rad is not None]
+    assert len(yaws_rad) == len(forecasts)
+    assert np.abs(yaws_rad).max() < 0.06
+
+
+@pytest.mark.parametrize("heading_every", [1, 5])
+@pytest.mark.parametrize(("rate_rad_s", "lasts_s"), [(1.0, 0.5), (1.0, 2.0), (-3.0, 1.0), (5.0, 4.0)])
+def test_gyro_that_runs_away_leaves_the_heading_as_good_as_is_said(
+    rate_rad_s: float, lasts_s: float, heading_every: int
+) -> None:
+    found = []
+    for seed in range(4):
+        after = parked(
+            lambda t_s: rate_rad_s if 4.0 <= t_s < 4.0 + lasts_s else 0.0, 10.0, seed, heading_every=heading_every
+        )[-1]
+        assert after.yaw_rad is not None
+        found.append((float(after.yaw_rad[0]), after.yaw_std_rad))
+    assert np.mean([(error / std) ** 2 for error, std in found]) < 3.0
 
 
 def test_variance_that_contradictions_have_made_negative_is_told_as_none() -> None:
