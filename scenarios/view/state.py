@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from link.messages import (
     BodyTruth,
@@ -18,15 +17,13 @@ from link.messages import (
     PadGeometry,
     PadSighting,
     Plan,
-    Vector3,
 )
 from link.payloads import cdr, json_messages
+from link.payloads.checks import PayloadError
 from link.payloads.decklander_msgs import PACKAGE, fields_of
 from link.records import replace
-from link.units import NS_PER_S
 from link.zenoh.keys import Keys
-
-Array = NDArray[np.float64]
+from scenarios.view.fields import Array, number, rows, stamp_ns, vector
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -172,7 +169,7 @@ def _estimate(payload: bytes) -> dict[str, Any]:
     fields = fields_of(payload, f"{PACKAGE}/VehicleEstimate")
     yaw = fields["yaw_rad"]
     estimate = Estimate(
-        t_ns=_stamp_ns(fields),
+        t_ns=stamp_ns(fields),
         position_enu_m=fields["position_m"],
         velocity_enu_m_s=fields["velocity_m_s"],
         yaw_rad=float(yaw[0]) if len(yaw) else None,
@@ -182,10 +179,10 @@ def _estimate(payload: bytes) -> dict[str, Any]:
 
 def _forecast(payload: bytes) -> dict[str, Any]:
     fields = fields_of(payload, f"{PACKAGE}/Forecast")
-    path = ForecastPath(
-        position_enu_m=fields["position_m"].reshape(-1, 3), std_m=fields["position_std_m"].reshape(-1, 3)
-    )
-    return {"forecast": path}
+    position_enu_m, std_m = rows(fields["position_m"]), rows(fields["position_std_m"])
+    if len(position_enu_m) != len(std_m):
+        raise PayloadError(f"{len(position_enu_m)} positions have {len(std_m)} standard deviations")
+    return {"forecast": ForecastPath(position_enu_m=position_enu_m, std_m=std_m)}
 
 
 def _link(payload: bytes) -> dict[str, Any]:
@@ -206,22 +203,22 @@ def _plan(payload: bytes) -> dict[str, Any]:
 
 
 def _read_plan(payload: bytes) -> dict[str, Any]:
-    return {"plan_enu_m": fields_of(payload, f"{PACKAGE}/Trajectory")["position_m"].reshape(-1, 3)}
+    return {"plan_enu_m": rows(fields_of(payload, f"{PACKAGE}/Trajectory")["position_m"])}
 
 
 def _step(payload: bytes) -> dict[str, Any]:
     fields = fields_of(payload, f"{PACKAGE}/Step")
-    t_ns = _stamp_ns(fields)
+    t_ns = stamp_ns(fields)
     status = LandingStatus(
         stamp_ns=t_ns,
         phase=fields["phase"],
         reason=fields["reason"],
-        relative_position_enu_m=_vector(fields["relative_position_m"]),
-        relative_velocity_enu_m_s=_vector(fields["relative_velocity_m_s"]),
-        height_above_pad_m=_number(fields["height_above_pad_m"]),
-        time_to_contact_s=_number(fields["time_to_contact_s"]),
+        relative_position_enu_m=vector(fields["relative_position_m"]),
+        relative_velocity_enu_m_s=vector(fields["relative_velocity_m_s"]),
+        height_above_pad_m=number(fields["height_above_pad_m"]),
+        time_to_contact_s=number(fields["time_to_contact_s"]),
         armed=bool(fields["armed"]),
-        fix_age_s=_number(fields["fix_age_s"]),
+        fix_age_s=number(fields["fix_age_s"]),
     )
     return {"t_ns": t_ns, "status": status, **_plan_over(status)}
 
@@ -229,17 +226,5 @@ def _step(payload: bytes) -> dict[str, Any]:
 def _contact_forecast(payload: bytes) -> dict[str, Any]:
     fields = fields_of(payload, f"{PACKAGE}/ContactForecast")
     values = {name: float(fields[name]) for name in ContactForecast.__struct_fields__ if name != "in_s"}
-    forecast = ContactForecast(in_s=_number(fields["in_s"]), **values)
-    return {"recorded_forecast": RecordedForecast(t_ns=_stamp_ns(fields), forecast=forecast)}
-
-
-def _stamp_ns(fields: dict[str, Any]) -> int:
-    return int(fields["header.stamp.sec"]) * NS_PER_S + int(fields["header.stamp.nanosec"])
-
-
-def _vector(values: Array) -> Vector3 | None:
-    return (float(values[0]), float(values[1]), float(values[2])) if len(values) else None
-
-
-def _number(values: Array) -> float | None:
-    return float(values[0]) if len(values) else None
+    forecast = ContactForecast(in_s=number(fields["in_s"]), **values)
+    return {"recorded_forecast": RecordedForecast(t_ns=stamp_ns(fields), forecast=forecast)}
