@@ -4,6 +4,7 @@ import errno
 import select
 import socket
 import time
+from collections.abc import Set
 
 from link.transports.device import NetworkDevice
 from link.transports.tcp_connection import TcpConnection
@@ -117,6 +118,9 @@ class TcpClientTransport(Transport):
 class TcpServerTransport(Transport):
     """Serves clients, each of which gets everything that is sent.
 
+    A further one than there is room for takes the place of the one that has been silent for longest, never that of the
+    pinned one: whoever connects and says nothing keeps nobody out.
+
     Args:
         device: where.
         is_patient: keep clients that do not read.
@@ -137,7 +141,7 @@ class TcpServerTransport(Transport):
         self._listener.listen(_CLIENTS_MAX)
         self._waiting = select.epoll()  # one descriptor that is readable when any of them is
         self._waiting.register(self._listener, select.EPOLLIN)
-        self._clients: dict[int, TcpConnection] = {}  # by the order in which they came
+        self._clients: dict[int, TcpConnection] = {}  # the latest that came or was heard is the last
         self._met = 0
 
     @property
@@ -173,8 +177,10 @@ class TcpServerTransport(Transport):
         if self.fileno() < 0 or not wait_readable(self.fileno(), timeout_s):
             return []
         received = [PeerBytes(number, data) for number, client in self._clients.items() if (data := client.read())]
+        for number, _ in received:
+            self._clients[number] = self._clients.pop(number)
         self._let_go()
-        self._accept()
+        self._accept({self._pinned, *(number for number, _ in received)})
         heard = [one for one in received if self._pinned in {None, one.peer}]
         self._strangers += len(received) - len(heard)
         return heard
@@ -194,17 +200,25 @@ class TcpServerTransport(Transport):
         self._waiting.close()
         self._listener.close()
 
-    def _accept(self) -> None:
+    def _accept(self, kept: Set[int | None]) -> None:
+        """Takes a client that has come; where there is no room, another one goes, but none of `kept`."""
         try:
             connected = self._listener.accept()[0]
         except OSError:  # nobody new, or gone again before it was served
             return
-        if len(self._clients) == _CLIENTS_MAX:
+        if len(self._clients) == _CLIENTS_MAX and not self._make_room(kept):
             connected.close()
             return
         self._clients[self._met] = TcpConnection(connected, is_patient=self._is_patient)
         self._met += 1
         self._waiting.register(connected, select.EPOLLIN)
+
+    def _make_room(self, kept: Set[int | None]) -> bool:
+        silent = next((number for number in self._clients if number not in kept), None)
+        if silent is None:
+            return False
+        self._clients.pop(silent).close()
+        return True
 
     def _let_go(self) -> None:
         """Forgets those that have gone; epoll forgets a closed socket by itself."""

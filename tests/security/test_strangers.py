@@ -1,7 +1,8 @@
 """Somebody else who sends MAVLink to the companion's port, without a key: what they reach, and what they do not."""
 
+import socket
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 
 import pytest
@@ -14,6 +15,7 @@ from link.mavlink.session import MavlinkSession
 from link.mavlink.signing import SIGNING_EPOCH_NS, Signing
 from link.transports.device import NetworkDevice
 from link.transports.opening import open_transport
+from link.transports.tcp_transport import TcpServerTransport
 from link.transports.transport import Transport
 from link.transports.udp_transport import UdpInTransport
 from tests.link.mavlink.fake_autopilot import MS, START_NS, FakeAutopilot, Pair, S, of_kind
@@ -34,7 +36,7 @@ def until(condition: Callable[[], bool]) -> None:
 
 
 class Companion:
-    """A session behind a listening UDP port; `t_ns` is its local time."""
+    """A session behind a listening port; `t_ns` is its local time."""
 
     def __init__(self, transport: Transport, signing: Signing | None = None) -> None:
         self.transport = transport
@@ -47,7 +49,7 @@ class Companion:
         """Take what has come and send what is due; return how many datagrams were heard."""
         received = self.transport.receive_by_peer(0.01)
         for data in self.peer.heard(received):
-            self._take(self.session.receive(data, self.t_ns, is_datagram=True))
+            self._take(self.session.receive(data, self.t_ns, is_datagram=self.transport.is_datagram))
         self._take(self.session.poll(self.t_ns))
         for frame in self.session.take_output():
             self.transport.send(frame)
@@ -143,6 +145,75 @@ def test_sender_without_the_key_is_neither_listened_to_nor_sent_to(listener: Udp
         assert companion.modes == [1]
         assert autopilot.receive(0.5) != b""
         assert stranger.receive(0.01) == b""
+
+
+class Crowd:
+    """Connections to a port that say nothing unless they are told to."""
+
+    def __init__(self, port: int) -> None:
+        self._port = port
+        self.connections: list[socket.socket] = []
+
+    def grow(self, count: int) -> None:
+        for _ in range(count):
+            self.connections.append(socket.create_connection(("127.0.0.1", self._port)))
+            self.connections[-1].setblocking(False)
+
+    def loses(self, lost: range, turn: Callable[[], object]) -> None:
+        """Turn until nothing more comes and just these are closed, by their numbers."""
+        until(lambda: not turn() and [_is_closed(one) for one in self.connections].count(True) >= len(lost))
+        assert [number for number, one in enumerate(self.connections) if _is_closed(one)] == list(lost)
+
+
+def _is_closed(connection: socket.socket) -> bool:
+    try:
+        return connection.recv(4096) == b""
+    except BlockingIOError:
+        return False
+
+
+@pytest.fixture
+def server() -> Iterator[TcpServerTransport]:
+    with TcpServerTransport(NetworkDevice(kind="tcpin", host="127.0.0.1", port=0)) as transport:
+        yield transport
+
+
+@pytest.fixture
+def crowd(server: TcpServerTransport) -> Iterator[Crowd]:
+    crowd = Crowd(server.port)
+    yield crowd
+    for one in crowd.connections:
+        one.close()
+
+
+def test_silent_connections_keep_no_autopilot_out_and_put_out_none_that_was_found(
+    server: TcpServerTransport, crowd: Crowd
+) -> None:
+    signed = MavlinkCodec(1, 1, signing=Signing(KEY, 1))
+    assert signed.signing is not None
+    signed.signing.advance(NOW_NS)
+    companion = Companion(server, Signing(KEY))
+    crowd.grow(16)
+    with open_transport(f"tcp:127.0.0.1:{server.port}") as autopilot:
+        crowd.loses(range(1), lambda: companion.turn() or autopilot.receive(0.01))
+        autopilot.send(signed.encode(beat(1)))
+        until(lambda: companion.turn() > 0)
+        for count in range(17, 57):
+            crowd.grow(1)
+            crowd.loses(range(count - 15), companion.turn)
+        companion.t_ns += S
+        companion.turn()
+        assert companion.modes == [1]
+        assert autopilot.receive(0.5) != b""
+
+
+def test_connection_that_speaks_outstays_the_silent_ones(server: TcpServerTransport, crowd: Crowd) -> None:
+    crowd.grow(1)
+    for count in range(1, 41):
+        crowd.connections[0].send(b"here")
+        until(lambda: server.receive(0.01) == b"here")
+        crowd.grow(1)
+        crowd.loses(range(1, count - 14), lambda: server.receive(0.01))
 
 
 @pytest.mark.parametrize("ahead_ns", [S // 5, 9 * S // 10, 3 * S])
