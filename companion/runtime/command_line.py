@@ -150,12 +150,35 @@ class RecordArguments(OptionGroup):
     foxglove: FoxgloveOption = None
     timing: _TimingOption = None
 
-    def check_writable(self) -> None:
-        """Find out before the flight, not after it.
+    def check_writable(self, folder: Path | None) -> None:
+        """Find out before the flight, not after it; the recording's folder is made, as other files may lie in it.
+
+        Args:
+            folder: of the recording.
 
         Raises:
-            UserError: a file cannot be written.
+            UserError: a file or the folder cannot be written.
         """
+        if folder is not None:
+            _make(folder)
         for path in (self.timing, self.tlog):
-            if path is not None and (path.is_dir() or not os.access(path.parent, os.W_OK)):
-                raise UserError(f"{path}: cannot be written; choose another place")
+            problem = None if path is None else _problem(path)
+            if problem is not None:
+                raise UserError(f"{path}: {problem}")
+
+
+def _make(folder: Path) -> None:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise UserError(f"{folder}: cannot be recorded into ({error.strerror}); choose another place") from error
+
+
+def _problem(path: Path) -> str | None:
+    """Return why a file cannot be written."""
+    folder = path.parent
+    if not os.access(folder, os.F_OK):
+        return f"there is no folder {folder}; make it or choose another place"
+    if not os.access(folder, os.W_OK | os.X_OK):
+        return f"the folder {folder} cannot be written; choose another place"
+    return "is a folder; name a file in it" if path.is_dir() else None

@@ -59,7 +59,7 @@ def run_program(asked: Program) -> None:
         UserError: a device, an endpoint or a file is wrong.
     """
     signing = asked.mavlink.signing()
-    asked.record.check_writable()
+    asked.record.check_writable(asked.folder)
     with ExitStack() as stack:
         memory = asked.mavlink.remember(signing)
         if memory is not None:

@@ -29,8 +29,11 @@ def test_printed_configuration_is_the_default_and_can_be_read_back(
         (("--zenoh-config", "none.json5"), "none.json5"),
         (("-l", "tcp/192.0.2.1:7447"), "--insecure"),
         (("-l", "tcp/192.0.2.1:7447", "--insecure"), "192.0.2.1"),
-        (("--timing", "there/is/no/folder.json"), "folder.json"),
-        (("--tlog", "there/is/no/flight.tlog"), "flight.tlog"),
+        (("--timing", "there/is/no/folder.json"), "folder.json: there is no folder there/is/no; make it"),
+        (("--tlog", "there/is/no/flight.tlog"), "flight.tlog: there is no folder there/is/no; make it"),
+        (("--tlog", "/dev/null/flight.tlog"), "the folder /dev/null cannot be written"),
+        (("--tlog", "/"), "is a folder; name a file"),
+        (("--record", "/dev/null/today"), "/dev/null/today: cannot be recorded into"),
         (("--signing-key", "none.key"), "none.key"),
     ],
 )
@@ -40,6 +43,17 @@ def test_mistake_is_told_before_the_numerics_are_loaded(
     monkeypatch.setitem(sys.modules, "companion.runtime.build", None)  # whoever imports it now, fails
     assert run_app("companion", app, ["--mavlink", "udpin:127.0.0.1:0", *arguments]) == 2
     assert named in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("is_configured", [False, True])
+def test_other_files_may_lie_in_a_new_folder_of_the_recording(
+    is_configured: bool, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = tmp_path / "flights" / "today"
+    record = ("--set", f'recording.folder="{folder}"') if is_configured else ("--record", str(folder))
+    files = ("--tlog", str(folder / "flight.tlog"), "--timing", str(folder / "timing.json"))
+    assert run_app("companion", app, ["--mavlink", "/dev/ttyNONE,57600", *record, *files]) == 2
+    assert capsys.readouterr().err.startswith("companion: /dev/ttyNONE")
 
 
 def test_help_loads_no_numerics_and_no_network() -> None:

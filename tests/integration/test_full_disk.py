@@ -31,7 +31,7 @@ def test_recording_that_cannot_be_written_is_told_while_it_is_so_and_ends_nothin
     device, endpoint = f"127.0.0.1:{free_udp_port()}", free_tcp_endpoint()
     with Programs(tmp_path) as programs:
         programs.start("sim-autopilot", "--mavlink", f"udpout:{device}", "-l", endpoint).err.wait_for("ready")
-        told = ("--record", "flight", "--tlog", "flight.tlog", "--timing", "timing.json")
+        told = ("--record", "flight", "--tlog", "flight/flight.tlog", "--timing", "timing.json")
         companion = programs.start("companion", "--mavlink", f"udpin:{device}", "-e", endpoint, "--timeout", "0", *told)
         companion.out.wait_for("autopilot found")
         resource.prlimit(companion.pid, resource.RLIMIT_FSIZE, (0, 0))
