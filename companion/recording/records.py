@@ -64,3 +64,8 @@ class StepTimeRecord:
 
 
 Record = InputRecord | StepRecord | LinkRecord | StepTimeRecord
+
+
+def size_of(record: Record) -> int:
+    """Return how many bytes a record holds that somebody else has sent: all else is small."""
+    return len(record.data) if isinstance(record, InputRecord) else 0

@@ -19,7 +19,7 @@ from companion.runtime.start_and_handover import OwnStart, hand_over
 from companion.situation.phases import FLYING_PHASES, Phase
 from link.errors import UserError
 from link.mavlink.pinned_peer import PinnedPeer
-from link.mavlink.tlog import TlogSink
+from link.mavlink.tlog import TlogFrames, TlogSink
 from link.payloads import cdr
 from link.payloads.checks import PayloadError
 from link.program.clock import Clock, ClockTick, SimulatedClock, SystemClock, spare_present_objects
@@ -41,7 +41,7 @@ def run(node: CompanionNode, links: Links, options: LoopOptions) -> Timings:
     with ExitStack() as stack:
         tlog: Recorder | None = None
         if options.tlog is not None:
-            tlog = BackgroundRecorder(TlogSink(options.tlog))
+            tlog = BackgroundRecorder(TlogSink(options.tlog), size_of=TlogFrames.size)
             stack.callback(tlog.close)
         lookers = onlookers(stack, links.zenoh, links.keys, options.device)
         publications = outbox(links.zenoh)

@@ -125,9 +125,11 @@ def _recorder(asked: Program) -> BackgroundRecorder | None:
     """Return what records into the folder and shows in Foxglove, None where neither is asked for."""
     if asked.folder is None and asked.record.foxglove is None:
         return None
+    from companion.recording.records import size_of
     from companion.recording.sink import CompanionSink, MessageStores
 
-    return BackgroundRecorder(CompanionSink(MessageStores(_stores(asked)), asked.keys, asked.config.descent))
+    sink = CompanionSink(MessageStores(_stores(asked)), asked.keys, asked.config.descent)
+    return BackgroundRecorder(sink, size_of=size_of)
 
 
 def _stores(asked: Program) -> "list[MessageStore]":

@@ -62,6 +62,10 @@ class TlogFrames(NamedTuple):
     frames: list[bytes]
     t_ns_utc: int
 
+    def size(self) -> int:
+        """Returns how many bytes they take in a recording."""
+        return sum(_TIME.size + len(frame) for frame in self.frames)
+
 
 class TlogSink:
     """A recorder's sink that writes a recording of frames; a power failure costs the last second.

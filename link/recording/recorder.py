@@ -13,6 +13,9 @@ from contextlib import suppress
 from typing import Any, Protocol
 
 _CAPACITY = 20_000  # half a minute of everything that a companion records
+# Of what waits, as peers may send what is large: an SD card of 10 MB/s writes as much in the seconds that an end waits
+# for it. As many records as may wait take less than half of it when they are of a kilobyte, which none of ours takes.
+_BYTES_MAX = 50_000_000
 _LOOK_S = 0.02  # between two looks for records: waking a thread at each would cost the loop more than all else here
 _PAUSE_S = 20e-6  # after each record, so that the loop never waits for the interpreter longer than for one
 _CLOSE_WAIT_S = 5.0
@@ -67,12 +70,17 @@ class Recorder(Protocol):
         """Write what is left, as far as it can be written soon."""
 
 
+def _no_size(_: Any) -> int:
+    return 0
+
+
 class BackgroundRecorder:
     """Writes into a sink from a thread of its own.
 
     Args:
         sink: used by that thread only.
         capacity: records that wait at most; further ones are dropped.
+        size_of: gives the bytes that a record holds; beyond 50 MB in all that waits, further ones are dropped, too.
         pause: gives the interpreter away after each record.
         keeps_newest: drop the oldest that waits in place of a further one.
     """
@@ -82,14 +90,18 @@ class BackgroundRecorder:
         sink: Sink,
         *,
         capacity: int = _CAPACITY,
+        size_of: Callable[[Any], int] = _no_size,
         pause: Callable[[float], None] = time.sleep,
         keeps_newest: bool = False,
     ) -> None:
         self._sink = sink
         self._capacity = capacity
+        self._size_of = size_of
         self._pause = pause
         self._keeps_newest = keeps_newest
-        self._waiting: deque[Any] = deque()
+        self._waiting: deque[tuple[int, Any]] = deque()  # sizes and records
+        self._waiting_bytes = 0
+        self._lock = threading.Lock()  # of these two; held for no longer than a record needs to come or go
         self._closing = threading.Event()
         self._dropped_full = 0
         self._dropped_failed = 0
@@ -109,12 +121,25 @@ class BackgroundRecorder:
 
     def put(self, record: Any) -> None:
         """Take one record."""
-        if len(self._waiting) >= self._capacity:
-            self._dropped_full += 1
-            if not self._keeps_newest:
-                return
-            self._waiting.popleft()  # the thread takes one at a time, so that a full queue never becomes empty here
-        self._waiting.append(record)
+        size = self._size_of(record)
+        with self._lock:
+            while self._keeps_newest and self._waiting and not self._has_room(size):
+                self._dropped_full += 1
+                self._take()
+            if self._has_room(size):
+                self._waiting.append((size, record))
+                self._waiting_bytes += size
+            else:
+                self._dropped_full += 1
+
+    def _has_room(self, size: int) -> bool:
+        return len(self._waiting) < self._capacity and self._waiting_bytes + size <= _BYTES_MAX
+
+    def _take(self) -> Any:
+        """Take the oldest that waits; with the lock."""
+        size, record = self._waiting.popleft()
+        self._waiting_bytes -= size
+        return record
 
     def close(self) -> None:
         """Write what is left; a disk that takes longer than five seconds is not waited for."""
@@ -129,8 +154,12 @@ class BackgroundRecorder:
         self._let(self._sink.close)
 
     def _write_waiting(self) -> None:
-        while self._waiting:
-            self._let(self._sink.write, self._waiting.popleft())
+        while True:
+            with self._lock:
+                if not self._waiting:
+                    return
+                record = self._take()
+            self._let(self._sink.write, record)
             self._pause(_PAUSE_S)
 
     def _let(self, act: Callable[..., None], *record: Any) -> None:

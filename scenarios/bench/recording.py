@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from companion.recording.folder import recording_sink
-from companion.recording.records import InputRecord, StepRecord
+from companion.recording.records import InputRecord, StepRecord, size_of
 from companion.runtime.build import build_node
 from companion.runtime.node import CompanionNode
 from link.recording.recorder import BackgroundRecorder
@@ -64,7 +64,7 @@ def recording_cost(scenario: Scenario, flown: FlownInputs, folder: Path) -> dict
         `step_ratio`: a step's processor time with recording over that without, the median of all steps;
         `writer_cpu_share`: of a core, for the recorder's thread, over the flight's duration; `dropped` records.
     """
-    recorder = BackgroundRecorder(recording_sink(folder, scenario.system.companion, Keys()))
+    recorder = BackgroundRecorder(recording_sink(folder, scenario.system.companion, Keys()), size_of=size_of)
     nodes = [build_node(scenario.system.companion, Keys(), recorder=one) for one in (None, recorder)]
     began_ns = time.process_time_ns() - time.thread_time_ns()
     steps = _steps(flown.records, nodes, recorder)

@@ -78,5 +78,6 @@ def test_a_power_failure_costs_the_last_second(tmp_path: Path, monkeypatch: pyte
         sink.write(TlogFrames([b"frame", b"answer"], T_NS + k * 100_000_000))
     sink.write(TlogFrames([b"frame", b"answer"], T_NS - 3_600_000_000_000))
     sink.close()
-    a_record = 2 * 8 + len(b"frame") + len(b"answer")
+    a_record = TlogFrames([b"frame", b"answer"], T_NS).size()
+    assert a_record == 2 * 8 + len(b"frame") + len(b"answer")
     assert on_disk == [a_record, 11 * a_record, 21 * a_record, 26 * a_record, 26 * a_record]

@@ -87,3 +87,25 @@ def test_recorder_drops_what_does_not_fit_and_never_waits() -> None:
     sink.goes_on.set()
     recorder.close()
     assert sink.written == list(range(11))
+
+
+@pytest.mark.parametrize("keeps_newest", [False, True])
+def test_what_waits_is_bounded_in_bytes_and_there_is_room_again_once_it_was_written(keeps_newest: bool) -> None:
+    sink = _Sink()
+    sink.goes_on.clear()
+    recorder = BackgroundRecorder(sink, size_of=len, keeps_newest=keeps_newest)
+    recorder.put("first")
+    assert sink.entered.wait(5.0)
+    large = [character * 1_000_000 for character in "abc"]
+    for record in (large[0], *[large[1]] * 58, large[2]):
+        recorder.put(record)
+    assert (recorder.waiting, recorder.dropped) == (50, 10)
+    sink.goes_on.set()
+    deadline_s = time.monotonic() + 10.0
+    while recorder.waiting:
+        assert time.monotonic() < deadline_s
+    recorder.put(large[2])
+    recorder.close()
+    oldest, newest = (large[1], large[2]) if keeps_newest else (large[0], large[1])
+    assert sink.written == ["first", oldest, *[large[1]] * 48, newest, large[2]]
+    assert recorder.dropped == 10
