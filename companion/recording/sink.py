@@ -7,12 +7,13 @@ from typing import Protocol
 
 from companion.config.descent import DescentConfig
 from companion.recording.messages import LONG_EVERY, input_messages, link_message, step_messages, step_time_message
-from companion.recording.records import InputRecord, LinkRecord, Record, StepRecord, StepTimeRecord
+from companion.recording.records import InputRecord, LinkRecord, Record, StepRecord, StepTimeRecord, size_of
 from companion.recording.scenes import scene_messages
 from link.payloads.decklander_msgs import RosMessage
 from link.zenoh.keys import Keys
 
 _EARLY_MAX = 2_000  # inputs that wait for UTC to become known: about five seconds of them
+_EARLY_BYTES_MAX = 20_000_000  # of what others sent among them: ten times what so many of a kilobyte take
 
 
 class MessageStore(Protocol):
@@ -74,6 +75,7 @@ class CompanionSink:
         self._keys = keys
         self._descent = descent
         self._early: deque[Record] | None = deque()
+        self._early_bytes = 0
         self._utc_from_local_ns = 0
         self._last_local_ns = 0
         self._steps = 0
@@ -90,7 +92,9 @@ class CompanionSink:
             self._write(record)
             return
         self._early.append(record)
-        if (isinstance(record, StepRecord) and record.utc_known) or len(self._early) >= _EARLY_MAX:
+        self._early_bytes += size_of(record)
+        is_full = len(self._early) >= _EARLY_MAX or self._early_bytes >= _EARLY_BYTES_MAX
+        if is_full or (isinstance(record, StepRecord) and record.utc_known):
             self._write_early()
 
     def close(self) -> None:
