@@ -63,7 +63,7 @@ class TlogFrames(NamedTuple):
     t_ns_utc: int
 
     def size(self) -> int:
-        """Returns how many bytes they take in a recording."""
+        """Return how many bytes they take in a recording."""
         return sum(_TIME.size + len(frame) for frame in self.frames)
 
 
