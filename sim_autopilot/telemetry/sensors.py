@@ -1,15 +1,16 @@
-"""Messages about sensors, actuators and the estimator, made from the true motion: they err as `own_state` does.
+"""Messages about sensors, actuators and the estimator: all but the truth of a simulation err as `own_state` does.
 
 Pressure and temperature: ICAO standard atmosphere, troposphere.
 """
 
-from math import degrees
+from math import degrees, dist
 
 from link.frames.rotations import frd_from_flu, quaternion_ned_frd_from_enu_flu
 from link.mavlink.dialect import Message, mavlink
 from sim_autopilot.core.places import geodetic
 from sim_autopilot.flight.manual import sticks_in_effect
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
+from sim_autopilot.plant.snapshot import Snapshot, take_snapshot
 from sim_autopilot.telemetry.range_finder import height_over_surface_m
 from sim_autopilot.telemetry.status import boot_ms
 
@@ -181,12 +182,18 @@ def wind_cov(memory: AutopilotMemory, _config: AutopilotConfig) -> Message:
     )
 
 
+def truth(memory: AutopilotMemory) -> Snapshot:
+    """Return the drone as it is, without the error of what its autopilot believes."""
+    return take_snapshot(memory.plant.state, memory.tuning.plant_config.airframe, memory.now.boot_ns)
+
+
 def hil_state_quaternion(memory: AutopilotMemory, _config: AutopilotConfig) -> Message:
     """Return HIL_STATE_QUATERNION, by which a simulation tells the truth."""
-    now = memory.now
+    now = truth(memory)
     latitude, longitude, altitude_m = geodetic(memory.places.chart, now.position_enu_m)
     east, north, up = now.velocity_enu_m_s
     velocity = (round(100.0 * v) for v in (north, east, -up))
+    airspeed_cm_s = round(100.0 * dist(now.velocity_enu_m_s, memory.world.wind_enu_m_s))
     force = (max(-32767, min(32767, round(f * _MILLI_G_PER_M_S2))) for f in frd_from_flu(now.specific_force_flu_m_s2))
     return mavlink.MAVLink_hil_state_quaternion_message(
         now.boot_ns // 1000,
@@ -196,7 +203,7 @@ def hil_state_quaternion(memory: AutopilotMemory, _config: AutopilotConfig) -> M
         round(degrees(longitude) * 1e7),
         round(1000.0 * altitude_m),
         *velocity,
-        round(100.0 * now.speed_m_s),
-        round(100.0 * now.speed_m_s),
+        airspeed_cm_s,
+        airspeed_cm_s,
         *force,
     )

@@ -10,7 +10,7 @@ from link.mavlink.dialect import Message, mavlink
 from sim_autopilot.core.places import geodetic
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, has_passed
 from sim_autopilot.telemetry.motion import attitude, wire_place
-from sim_autopilot.telemetry.sensors import scaled_imu, scaled_pressure
+from sim_autopilot.telemetry.sensors import scaled_imu, scaled_pressure, truth
 from sim_autopilot.telemetry.status import boot_ms
 
 _BOARD_MV = 5000
@@ -58,7 +58,7 @@ def ahrs2(memory: AutopilotMemory, config: AutopilotConfig) -> Message:
 
 def simstate(memory: AutopilotMemory, config: AutopilotConfig) -> Message:
     """Return SIMSTATE, by which the simulation tells the truth."""
-    angles, now = attitude(memory, config), memory.now
+    angles, now = attitude(memory, config), truth(memory)
     latitude, longitude, _ = wire_place(geodetic(memory.places.chart, now.position_enu_m))
     force, rates = frd_from_flu(now.specific_force_flu_m_s2), frd_from_flu(now.angular_velocity_flu_rad_s)
     return mavlink.MAVLink_simstate_message(angles.roll, angles.pitch, angles.yaw, *force, *rates, latitude, longitude)

@@ -16,6 +16,7 @@ from sim_autopilot.interfaces import Builder
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
 from sim_autopilot.safety.failsafes_step import charge_of
 from sim_autopilot.telemetry.motion import wire_place
+from sim_autopilot.telemetry.sensors import truth
 from sim_autopilot.telemetry.status import boot_ms, extended_sys_state
 
 _NONE = (0, 0, 0, 0)
@@ -30,7 +31,7 @@ _ALL_WELL = (
 
 def sim_state(memory: AutopilotMemory, config: AutopilotConfig) -> Message:
     """Return SIM_STATE, by which the simulation tells the truth."""
-    short, now = simstate(memory, config), memory.now
+    short, now = simstate(memory, config), truth(memory)
     q = quaternion_ned_frd_from_enu_flu(now.orientation_wxyz)
     place = geodetic(memory.places.chart, now.position_enu_m)
     motion = (short.xacc, short.yacc, short.zacc, short.xgyro, short.ygyro, short.zgyro)

@@ -1,9 +1,16 @@
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 
+from link.frames.geodesy import enu_from_geodetic
 from link.mavlink.dialect import Message, mavlink
-from sim_autopilot.telemetry.sensors import pressure_hpa
-from tests.sim_autopilot.pilot import Pilot, command
+from link.records import replace
+from sim_autopilot.memory import AutopilotConfig
+from sim_autopilot.plant.own_state import OwnStateModel
+from sim_autopilot.telemetry.sensors import hil_state_quaternion, pressure_hpa
+from tests.sim_autopilot.copter import ardupilot
+from tests.sim_autopilot.pilot import DATUM, Pilot, command, px4
 
 
 def requested(pilot: Pilot, message_id: int) -> Message:
@@ -47,3 +54,33 @@ def test_rc_channels_tell_what_the_pilot_holds() -> None:
     told = pilot.last("RC_CHANNELS")
     assert (told.chan1_raw, told.chan2_raw, told.chan3_raw, told.chan4_raw) == (1400, 1300, 1500, 2000)
     assert (told.chancount, told.chan9_raw) == (8, 65535)
+
+
+@pytest.mark.parametrize(
+    ("plugged_in", "message_id", "axes"),
+    [
+        (px4, mavlink.MAVLINK_MSG_ID_HIL_STATE_QUATERNION, ("lat", "lon")),
+        (ardupilot, mavlink.MAVLINK_MSG_ID_SIM_STATE, ("lat", "lon")),
+        (ardupilot, mavlink.MAVLINK_MSG_ID_SIMSTATE, ("lat", "lng")),
+    ],
+)
+def test_a_simulations_truth_is_not_what_its_autopilot_believes(
+    plugged_in: Callable[..., AutopilotConfig], message_id: int, axes: tuple[str, str]
+) -> None:
+    pilot = Pilot(plugged_in(own_state=OwnStateModel(seed=3, position_std_m=2.0, velocity_std_m_s=0.5)))
+    pilot.run(0.1)
+    told = requested(pilot, message_id).to_dict()
+    latitude, longitude = (np.radians(1e-7 * told.get(f"{axis}_int", told.get(axis))) for axis in axes)
+    place = enu_from_geodetic(DATUM, latitude, longitude, DATUM.altitude_m)
+    assert place[:2] == pytest.approx((0.0, 0.0), abs=0.02)
+    assert np.hypot(*pilot.node.memory.now.position_enu_m[:2]) > 0.5
+    assert told.get("vx", told.get("vn", 0.0)) == pytest.approx(0.0, abs=0.01)
+
+
+def test_a_drone_on_the_ground_feels_the_wind_as_airspeed() -> None:
+    pilot = Pilot()
+    pilot.step()
+    memory = pilot.node.memory
+    windy = replace(memory, world=replace(memory.world, wind_enu_m_s=(3.0, -4.0, 0.0)))
+    told = hil_state_quaternion(windy, px4())
+    assert (told.true_airspeed, told.ind_airspeed) == (500, 500)
