@@ -102,7 +102,7 @@ def load_scenario(name_or_path: str) -> Scenario:
     else:
         table = _find_table(name) | {"name": name_or_path}
     for option in options:
-        table = _with_option(table, option, name_or_path)
+        table = _with_option(table, option, options, name_or_path)
     return complete(validate(Scenario, _resolve(table, name_or_path), source=name_or_path))
 
 
@@ -115,13 +115,15 @@ def complete(scenario: Scenario) -> Scenario:
     return place_drone(look_out_for_silent_vehicle(tell_of_one_frame(scenario)))
 
 
-def _with_option(table: Table, option: str, whole: str) -> Table:
+def _with_option(table: Table, option: str, options: Sequence[str], whole: str) -> Table:
     section, equals, preset = option.partition("=")
     sections = (*_DEFAULT_PRESETS, *_PLAIN_OPTIONS, *_RUN_OPTIONS)
     if not equals or section not in sections:
         meant = _meant(section, preset)
         near = f"did you mean +{meant}?" if meant else f"there are {', '.join(sections)}, each with =PRESET"
         raise UserError(f"{whole}: no preset is called '{option}'; {near} (`scenarios list` shows them)")
+    if sum(one.startswith(f"{section}=") for one in options) > 1:
+        raise UserError(f"{whole} names its {section} twice: leave one out")
     return merge(table, {"run": {section: preset}}) if section in _RUN_OPTIONS else table | {section: preset}
 
 

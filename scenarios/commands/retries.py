@@ -63,13 +63,14 @@ def retries_command(
     """Break descents off and see whether the next approach lands; exit code 1 when fewer than 95 % do."""
     require("campaign", "scenarios retries")
     from scenarios.catalogue.catalogue import load_scenario
+    from scenarios.catalogue.firmware_option import with_firmware
     from scenarios.config import FIRMWARES
 
     if firmware is not None and firmware not in FIRMWARES:
         raise UserError(f"--firmware is one of {', '.join(FIRMWARES)}, not '{firmware}'")
-    for name in names or ():
-        load_scenario(name)  # tells what is wrong with it before anything is flown
     firmwares = tuple(one for one in FIRMWARES if firmware in {None, one})
+    for name in names or ():
+        load_scenario(with_firmware(name, firmwares[0]))  # tells what is wrong with it before anything is flown
     drawn = range(first_seed, first_seed + seeds)
     rows = [_row(group) for group in _fly(names or _SCENARIOS, firmwares, height or _HEIGHTS_M, drawn, workers)]
     if as_json:

@@ -11,6 +11,7 @@ from companion.core.reasons import Reason
 from companion.situation.phases import Phase
 from link.units import NS_PER_S
 from scenarios.catalogue.catalogue import load_scenario
+from scenarios.catalogue.firmware_option import with_firmware
 from scenarios.config import FirmwareName
 from scenarios.faults.flight import FaultFlight
 from scenarios.recordings.approaches import approaches_of
@@ -64,7 +65,7 @@ class Retried:
 
 def fly_retry(case: RetryCase) -> Retried:
     """Break the first descent off at the case's height, and fly on until the run is over, in lockstep."""
-    scenario = load_scenario(f"{case.scenario}+firmware={case.firmware}")
+    scenario = load_scenario(with_firmware(case.scenario, case.firmware))
     flight = FaultFlight(scenario, case.seed)
     flight.break_off_at(case.height_m)
     flight.run()

@@ -68,6 +68,8 @@ MISTAKES = [
     ("scenarios", "run strait_5", ["'strait_5'", "'straight_5'"]),
     ("scenarios", "run straight_5+wnd=calm", ["'wnd=calm'", "did you mean +wind=calm?"]),
     ("scenarios", "run circle_5+foo=bar", ["'foo=bar'", "sensors, wind, link", "=PRESET"]),
+    ("scenarios", "retries straight_5+firmware=px4 --firmware ardupilot", ["names its firmware", "--firmware"]),
+    ("scenarios", "retries straight_5+firmware=px4", ["names its firmware", "leave out that"]),
     ("scenarios", "run none.toml", ["none.toml", "cannot be read"]),
     ("scenarios", "run scenario.toml", ["scenario.toml", "'time_limits_s'", "did you mean run.time_limit_s or "]),
     ("scenarios", "ros2 topics --domain 77", ["domain 77", "check --domain, and -e"]),

@@ -86,7 +86,8 @@ def test_every_option_that_is_listed_fits_behind_a_name() -> None:
     assert {"firmware=ardupilot", "place=deck", "telemetry=none", "detector=model", "start=boot"} <= set(listed)
     for option in listed:
         # A drone that nothing tells of its vehicle needs sensors that see it.
-        assert load_scenario(f"straight_5+sensors=nominal+{option}").name.endswith(option)
+        with_sensors = option if option.startswith("sensors=") else f"sensors=nominal+{option}"
+        assert load_scenario(f"straight_5+{with_sensors}").name.endswith(option)
 
 
 def test_world_that_is_misspelt_is_told() -> None:
@@ -124,6 +125,8 @@ def test_autopilot_that_boots_is_not_there_within_its_first_second(option: str, 
         ("straight_5+sensors=nominel", ["nominel", "'nominal'"]),
         ("straight_5+sensor=nominal", ["sensor=nominal", "sensors"]),
         ("straight_5+firmware=inav", ["firmware", "inav"]),
+        ("straight_5+wind=gust+link=nominal+wind=calm", ["names its wind twice", "leave one out"]),
+        ("straight_5+start=boot+start=boot", ["names its start twice"]),
         ("nowhere.toml+firmware=px4", ["nowhere.toml", "cannot be read"]),
     ],
 )
