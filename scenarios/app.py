@@ -68,7 +68,9 @@ def run_command(
     name: NameArgument,
     *,
     seed: SeedOption = None,
-    speed: Annotated[float, typer.Option("--speed", min=0.1, max=50.0, help="Simulated seconds a second.")] = 1.0,
+    speed: Annotated[
+        float | None, typer.Option("--speed", min=0.1, max=50.0, help="Simulated seconds a second [default: 1].")
+    ] = None,
     lockstep: Annotated[bool, typer.Option("--lockstep", help="In one process on a simulated clock.")] = False,
     firmware: FirmwareOption = None,
     changes: SetOption = None,
@@ -87,10 +89,12 @@ def run_command(
     from scenarios.wire.run import run_over_wire
 
     scenario = load_changed_scenario(name if firmware is None else with_firmware(name, firmware), changes)
+    if lockstep and speed is not None:
+        raise UserError("--lockstep flies as fast as it can: leave out --speed")
     view_port = view_command.port_of_run(lockstep=lockstep, as_json=as_json) if view else None
     folder = run_folder(out, scenario.name)
     options = RunOptions(
-        seed=run_seed(name, seed), speed=speed, folder=folder, record=not no_record, view_port=view_port
+        seed=run_seed(name, seed), speed=speed or 1.0, folder=folder, record=not no_record, view_port=view_port
     )
     run = run_in_lockstep if lockstep else run_over_wire
     with Reporter(scenario, folder, as_json=as_json) as reporter:

@@ -89,11 +89,15 @@ class MavlinkArguments(OptionGroup):
         """Return signing with the key, None without one.
 
         Raises:
-            UserError: a file cannot be read, or is none of these.
+            UserError: a file cannot be read, or is none of these, or there are time stamps without a key.
         """
         from link.mavlink.signing_memory import open_signing
 
-        return None if self.signing_key is None else open_signing(self.signing_key, self.signing_stamps)
+        if self.signing_key is not None:
+            return open_signing(self.signing_key, self.signing_stamps)
+        if self.signing_stamps is not None:
+            raise UserError("--signing-stamps alone signs nothing: give --signing-key too, or leave it out")
+        return None
 
     def remember(self, signing: "Signing | None") -> "SigningMemory | None":
         """Return what keeps the time stamps of `signing`, to be closed."""

@@ -1,7 +1,8 @@
 """Ctrl-C as a program takes it: as a KeyboardInterrupt, or as the end at once where one would not get through.
 
-Imports and numba's compiler catch what is raised within them, so that a KeyboardInterrupt is lost there or becomes
-another error. In such a block the process ends instead: whatever it has written can be read however far it came.
+Imports, numba's compiler and what its kernels call to return a value catch what is raised within them, so that a
+KeyboardInterrupt is lost there or becomes another error. There the process ends instead: whatever it has written can be
+read however far it came.
 
 This is what a program imports first, so it imports nothing that takes time itself.
 """
@@ -14,6 +15,8 @@ from types import FrameType, TracebackType
 from link.program.exit_codes import EXIT_INTERRUPTED
 
 COMPILING = "compiling the numerics, as after an installation or an update; this takes a minute or two"
+
+_RETURNS_BY = "_numba_unpickle"  # in numba.core.serialize
 
 
 class _Process:
@@ -51,13 +54,13 @@ def take_interrupts(program: str) -> None:
         signal.signal(signal.SIGINT, interrupt)
 
 
-def interrupt(_number: int, _frame: FrameType | None) -> None:
+def interrupt(_number: int, frame: FrameType | None) -> None:
     """Handle a signal as described above.
 
     Raises:
         KeyboardInterrupt: outside of the blocks that none gets through.
     """
-    if _Process.blocks:
+    if _Process.blocks or (frame is not None and frame.f_code.co_name == _RETURNS_BY):
         os._exit(EXIT_INTERRUPTED)
     raise KeyboardInterrupt
 

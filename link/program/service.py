@@ -22,7 +22,7 @@ class Service:
         self._address = _address(environ.get("NOTIFY_SOCKET", ""))
         watchdog_us = environ.get("WATCHDOG_USEC", "")
         is_meant = environ.get("WATCHDOG_PID", str(os.getpid())) == str(os.getpid())
-        self._period_ns = int(watchdog_us) * _NS_PER_US // 2 if is_meant and watchdog_us.isdigit() else 0
+        self._period_ns = int(watchdog_us) * _NS_PER_US // 2 if is_meant and watchdog_us.isdecimal() else 0
         self._due_ns: int | None = None
         self._is_ready = False
         self._status = ""

@@ -11,7 +11,7 @@ import sys
 import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 from pydantic import BaseModel
 
@@ -25,6 +25,7 @@ COMPANION, SIM_AUTOPILOT, SCENARIO = "DECKLANDER_COMPANION", "DECKLANDER_SIM_AUT
 PREFIXES = (COMPANION, SIM_AUTOPILOT, SCENARIO)
 _OURS = "DECKLANDER_"
 _BELOW = "__"
+_PARTS_MAX = 20  # of a dotted key; no setting lies a third as deep
 
 
 def load_settings(
@@ -130,8 +131,12 @@ def _keys(parts: Sequence[str], model: type[BaseModel]) -> list[str]:
 
 
 def _nested(parts: Sequence[str], value: Any) -> dict[str, Any]:
-    first, *others = parts
-    return {first: _nested(others, value) if others else value}
+    if len(parts) > _PARTS_MAX:
+        raise UserError(f"{'.'.join(parts[:3])}...: a key has at most {_PARTS_MAX} parts; leave some out")
+    nested = value
+    for part in reversed(parts):
+        nested = {part: nested}
+    return cast("dict[str, Any]", nested)
 
 
 def _value(text: str) -> Any:

@@ -148,6 +148,8 @@ def _check(model: type[Model], table: Mapping[str, Any], source_of: Callable[[Lo
         # an unknown key goes first: misspelt, it is why another one is missing
         details = sorted(error.errors(include_url=False), key=lambda one: one["type"] != "extra_forbidden")
         raise UserError(report(details, model, source_of)) from None
+    except ValueError as error:  # a hexadecimal integer of thousands of digits
+        raise UserError(f"{source_of(())}: {str(error).partition(';')[0]}") from None
 
 
 def _is_in(location: Location, table: Mapping[str, Any]) -> bool:

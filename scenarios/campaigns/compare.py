@@ -29,8 +29,8 @@ def compare_campaigns(first: Path, second: Path, apart_from: str | None = None) 
         apart_from: an option of the cells in which A and B may differ, such as `system`.
 
     Raises:
-        UserError: a folder holds no campaign, they have no landing in common, or two cells of one of them differ in
-            nothing but `apart_from`.
+        UserError: a folder holds no campaign, they have no landing in common, no cell has `apart_from`, or two cells
+            of one of them differ in nothing else.
     """
     rows = read_landings(first), read_landings(second)
     differences = list(
@@ -45,8 +45,9 @@ def compare_rows(first: Sequence[Row], second: Sequence[Row], apart_from: str | 
     Where there are several cells, `together` compares all their pairs.
 
     Raises:
-        UserError: there is no pair, or two cells of one campaign differ in nothing but `apart_from`.
+        UserError: there is no pair, no cell has `apart_from`, or two of one campaign differ in nothing else.
     """
+    _check_option(apart_from, [row["cell"] for row in (*first, *second)])
     names, other_names = _names(first, apart_from), _names(second, apart_from)
     others = {(other_names[row["cell"]], row["seed"]): row for row in second}
     pairs: dict[str, list[Pair]] = {}
@@ -63,6 +64,14 @@ def compare_rows(first: Sequence[Row], second: Sequence[Row], apart_from: str | 
     if len(pairs) > 1:
         cells.append(_comparison("together", [pair for cell in sorted(pairs) for pair in pairs[cell]]))
     return {"cells": cells, "unpaired": unpaired}
+
+
+def _check_option(option: str | None, cells: Sequence[str]) -> None:
+    if option is None or any(_without(cell, option) != cell for cell in cells):
+        return
+    named = sorted({part.partition("=")[0] for cell in cells for part in cell.split("+")[1:]})
+    what = f"give one of {', '.join(named)}, or leave it out" if named else "leave it out"
+    raise UserError(f"--apart-from {option}: no cell of these campaigns has it behind its name; {what}")
 
 
 def _names(rows: Sequence[Row], apart_from: str | None) -> dict[str, str]:

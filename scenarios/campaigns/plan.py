@@ -16,6 +16,8 @@ from scenarios.catalogue.firmware_option import cells_with
 from scenarios.config import Scenario
 from scenarios.recordings.versions import commit, versions
 
+_SEED_END = 2**63  # the table of landings has 64 bits with a sign
+
 
 class Plan(StrictModel):
     """What a campaign flies: each cell with the same seeds.
@@ -83,6 +85,8 @@ def make_plan(
         UserError: no such cell or firmware, two cells of one name, or a configuration that does not fit.
     """
     loaded = [load_cell(cell) for cell in cells_with(cells, firmware)]
+    if first_seed + seeds > _SEED_END:
+        raise UserError(f"--first-seed {first_seed}: {seeds} seeds from there on pass 2^63; give a smaller one")
     names = [cell.name for cell in loaded]
     double = next((name for name in names if names.count(name) > 1), None)
     if double is not None:

@@ -113,7 +113,7 @@ def table_command(folder: FolderArgument, *, as_json: JsonOption = False, markdo
 
     say_missing(folder)
     rows, plan = read_landings(folder), read_plan(folder)
-    if markdown and not as_json:
+    if markdown:
         _write_markdown(rows, plan)
     else:
         _print_summary(rows, read_timing(folder), plan, as_json=as_json)

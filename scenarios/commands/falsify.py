@@ -86,6 +86,8 @@ def _space_of(request: "Request") -> "Space":
             f"'{request.slice}' is no slice of the domain: give one of {', '.join(slices())};"
             " a scenario of the catalogue draws nothing that could be searched"
         )
+    if request.landings > HELD_BACK_FROM:
+        raise UserError(f"give --landings {HELD_BACK_FROM} or less: so many seeds are not held back")
     if request.seed + request.landings > HELD_BACK_FROM:  # a start has one landing at least
         raise UserError(
             f"seeds from {HELD_BACK_FROM} on are held back for published figures:"

@@ -86,8 +86,10 @@ _DepartAtOnceOption = Annotated[
     bool, typer.Option("--depart-at-once", help="Do not wait until the simulated drone hovers.")
 ]
 _TimeoutOption = Annotated[
-    float, typer.Option("--timeout", min=0.0, help="Seconds without a simulated clock; 0 waits for ever.")
+    float | None,
+    typer.Option("--timeout", min=0.0, help="Seconds without a simulated clock; 0 waits for ever [default: 60]."),
 ]
+_TIMEOUT_S = 60.0
 
 
 @app.callback(invoke_without_command=True)
@@ -105,7 +107,7 @@ def ground_vehicle(
     changes: SetOption = None,
     use_sim_time: _UseSimTimeOption = False,
     depart_at_once: _DepartAtOnceOption = False,
-    timeout: _TimeoutOption = 60.0,
+    timeout: _TimeoutOption = None,
     names: NameArguments,
     endpoints: ZenohArguments,
     ros2: Ros2Arguments,
@@ -121,11 +123,10 @@ def ground_vehicle(
                 "--pad and what else describes a pad are for a real vehicle: leave them out with --scenario, whose "
                 "file says pad_size_m, roof_height_m and antenna_flu_m of its [vehicle]"
             )
-        simulation = _Simulation(scenario, changes, seed, depart_at_once, use_sim_time, timeout)
-        _drive(simulation, keys, open_zenoh)
+        timeout_s = _TIMEOUT_S if timeout is None else timeout
+        _drive(_Simulation(scenario, changes, seed, depart_at_once, use_sim_time, timeout_s), keys, open_zenoh)
         return
-    if changes:
-        raise UserError("--set changes a scenario: leave it out with a real vehicle, whose pad has options of its own")
+    _check_real(changes, seed, timeout, use_sim_time=use_sim_time, depart_at_once=depart_at_once)
     source = _source(gpsd, nmea, mavlink)
     from scenarios.vehicle_sources.pad import pad_geometry
 
@@ -141,6 +142,32 @@ def _zenoh_opener(keys: "Keys", endpoints: ZenohArguments, ros2: Ros2Arguments) 
     # a ROS 2 graph has its router at the default endpoint; else the vehicle waits there for the others
     options = endpoints.options(listens=layout is None)
     return partial(open_layout, options, layout, keys, (f"/{keys.vehicle}", "ground_vehicle"))
+
+
+def _check_real(
+    changes: Sequence[str] | None,
+    seed: int | None,
+    timeout_s: float | None,
+    *,
+    use_sim_time: bool,
+    depart_at_once: bool,
+) -> None:
+    """Find out what would change nothing.
+
+    Raises:
+        UserError: an option is of a scenario's vehicle only.
+    """
+    if changes:
+        raise UserError("--set changes a scenario: leave it out with a real vehicle, whose pad has options of its own")
+    simulated = {
+        "--use-sim-time": use_sim_time,
+        "--seed": seed is not None,
+        "--depart-at-once": depart_at_once,
+        "--timeout": timeout_s is not None,
+    }
+    given = [option for option, is_given in simulated.items() if is_given]
+    if given:
+        raise UserError(f"{' and '.join(given)}: only for the vehicle of --scenario; leave that out with a real one")
 
 
 class _Simulation(NamedTuple):

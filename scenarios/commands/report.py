@@ -14,6 +14,7 @@ from scenarios.commands.campaign import say_missing, table_command
 from scenarios.commands.options import WorkersOption
 
 _REPORT = "report"
+_SEEDS = 100
 
 
 def register(app: typer.Typer) -> None:
@@ -28,8 +29,9 @@ def report_or_campaign_table(
     what: Annotated[str, typer.Argument(metavar="report|CAMPAIGN", help="The report, or a campaign's folder.")],
     *,
     seeds: Annotated[
-        int, typer.Option("--seeds", min=1, metavar="N", help="Flights of each case of the report.")
-    ] = 100,
+        int | None,
+        typer.Option("--seeds", min=1, metavar="N", help="Flights of each case of the report [default: 100]."),
+    ] = None,
     workers: WorkersOption = None,
     markdown: Annotated[
         bool, typer.Option("--markdown", help="Print tables as docs/report.md and docs/benchmark.md have them.")
@@ -37,13 +39,17 @@ def report_or_campaign_table(
     as_json: JsonOption = False,
 ) -> None:
     """Print the report's outcomes, published against measured; or a campaign's summary again."""
+    if markdown and as_json:
+        raise UserError("--markdown and --json are two forms of the same: give one of them")
     if what != _REPORT:
+        if seeds is not None or workers is not None:
+            raise UserError(f"--seeds and --workers fly the report: leave them out with {what}, which is flown")
         table_command(Path(what), as_json=as_json, markdown=markdown)
         return
     require("campaign", "scenarios table report")
     from scenarios.source_report.table import fly_report, print_report, write_markdown
 
-    table = fly_report(seeds, workers)
+    table = fly_report(_SEEDS if seeds is None else seeds, workers)
     if as_json:
         sys.stdout.write(json.dumps(table, indent=2, allow_nan=False) + "\n")
     elif markdown:

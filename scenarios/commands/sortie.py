@@ -49,7 +49,10 @@ def sortie_command(
     workers: WorkersOption = None,
     as_json: JsonOption = False,
 ) -> int:
-    """Fly whole sorties: launch from the driving deck, stations, out of sight, home; exit code 1 if one is unsafe."""
+    """Fly whole sorties: launch from the driving deck, stations, out of sight, home.
+
+    Exit code 1 if one is unsafe, or touches anything between lift-off and landing.
+    """
     require("campaign", "scenarios sortie")
     from scenarios.catalogue.firmware_option import BOTH
     from scenarios.config import FIRMWARES

@@ -66,6 +66,10 @@ def view_command(
     From another machine: ssh -L 8080:127.0.0.1:8080 THIS_MACHINE, and http://127.0.0.1:8080 there.
     """
     keys = names.keys()
+    if seed is not None and road is None:
+        raise UserError("--seed is that of the scenario of --road: give --road, or leave it out")
+    if road is not None and recording is not None:
+        raise UserError(f"{recording} tells its own road: leave out --road")
     if foxglove_layout is not None:
         _write_layout(foxglove_layout, keys)
         return
@@ -90,7 +94,10 @@ def view_command(
 def _write_layout(path: Path, keys: "Keys") -> None:
     from scenarios.view.foxglove_layout import layout_json
 
-    path.write_text(layout_json(keys) + "\n", encoding="utf-8")
+    try:
+        path.write_text(layout_json(keys) + "\n", encoding="utf-8")
+    except OSError as error:
+        raise UserError(f"{path}: cannot be written ({error.strerror}); choose another place") from error
 
 
 def _road_of(name: str, seed: int | None) -> "Road":

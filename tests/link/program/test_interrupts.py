@@ -53,6 +53,20 @@ event.register("numba:run_pass", Interrupt())
 kernel(lambda one: one + one)(1.0)
 """
 
+_WHILE_A_KERNEL_RETURNS = """
+import os, pickle, signal
+from numba.core import serialize
+from link.program.interrupts import take_interrupts
+
+class Interrupt:
+    def __reduce__(self):
+        return os.kill, (os.getpid(), signal.SIGINT)
+
+take_interrupts("tool")
+serialize._numba_unpickle(0, pickle.dumps(Interrupt()), b"")
+print("went on")
+"""
+
 _AFTERWARDS = """
 import os, signal
 from link.compiled import kernel
@@ -96,6 +110,10 @@ def test_ctrl_c_that_meets_an_exec_ends_a_program_with_its_exit_code_all_the_sam
 
 def test_ctrl_c_while_numerics_are_compiled_ends_the_program() -> None:
     assert run(_WHILE_COMPILING) == (130, "", f"tool: {COMPILING}\n")
+
+
+def test_ctrl_c_while_a_kernel_makes_what_it_returns_ends_the_program() -> None:
+    assert run(_WHILE_A_KERNEL_RETURNS) == (130, "", "")
 
 
 def test_compiling_is_told_once_and_ctrl_c_after_it_ends_in_order() -> None:

@@ -104,6 +104,9 @@ def test_cells_of_one_campaign_that_become_the_same_are_refused(*, turned: bool)
     both = [row(1, "S2", cell="circle_5"), row(1, "abort", cell="circle_5+system=ukf")]
     other = [row(1, "S2", cell="circle_5+system=lkf")]
     first, second = (other, both) if turned else (both, other)
+    for cell in ("straight_5", "straight_5+link=nominal"):
+        with pytest.raises(UserError, match=r"^--apart-from system: no cell of these campaigns .* leave it out$"):
+            compare_rows([row(1, "S2", cell=cell)], [row(1, "S1", cell=cell)], "system")
     with pytest.raises(UserError, match=r"apart-from system: circle_5 and circle_5\+system=ukf of one campaign"):
         compare_rows(first, second, "system")
 
