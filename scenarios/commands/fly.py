@@ -27,7 +27,9 @@ def fly_command(
     ] = "udpin:127.0.0.1:14550",
     ship: Annotated[
         float | None,
-        typer.Option("--ship", min=0.1, metavar="M_S", help="Land on ArduPilot's simulated ship at this speed."),
+        typer.Option(
+            "--ship", min=0.1, max=60.0, metavar="M_S", help="Land on ArduPilot's simulated ship at this speed."
+        ),
     ] = None,
     sortie: Annotated[
         bool, typer.Option("--sortie", help="Launch from the vehicle, follow at three stations, come home and land.")
@@ -45,6 +47,7 @@ def fly_command(
     The vehicle drives by the place where the simulated drone stands, its pad at the height of the ground. In a sortie
     the drone launches from it; exit code 1 also when it touches anything between lift-off and landing.
     """
+    from link.transports.device import parse_device
     from scenarios.catalogue.catalogue import load_changed_scenario
     from scenarios.catalogue.world_names import run_seed
     from scenarios.commands.run_lines import Reporter
@@ -53,6 +56,8 @@ def fly_command(
     from scenarios.recordings.run_folder import run_folder
 
     scenario = load_changed_scenario(name, changes)
+    for device in (mavlink, watch):
+        parse_device(device)  # a mistake is told before a folder is made
     folder = run_folder(out, scenario.name)
     options = FlyOptions(
         mavlink=mavlink,
