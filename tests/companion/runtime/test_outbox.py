@@ -41,9 +41,9 @@ class StalledSession:
         del key, encoding
         return False
 
-    def subscribe(self, key: str) -> Inbox:
+    def subscribe(self, key: str, *, sample_bytes_max: int) -> Inbox:
         del key
-        return Inbox(capacity=8, wake_up=self.wake_up)
+        return Inbox(capacity=8, wake_up=self.wake_up, sample_bytes_max=sample_bytes_max)
 
     def watch_alive(self, key: str) -> Alive:
         del key
