@@ -8,16 +8,15 @@ above a file, the command line above both. What the environment says is told at 
 import difflib
 import os
 import sys
-import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, cast
+from typing import Any
 
 from pydantic import BaseModel
 
 from link.errors import UserError
 from link.program.near_names import models_in
-from link.program.toml_config import Model, load_config, merge
+from link.program.toml_config import DEPTH_MAX, Model, load_config, merge, tables_of
 
 COMPANION, SIM_AUTOPILOT, SCENARIO = "DECKLANDER_COMPANION", "DECKLANDER_SIM_AUTOPILOT", "DECKLANDER_SCENARIO"
 """What the variables of each configuration begin with."""
@@ -25,7 +24,7 @@ COMPANION, SIM_AUTOPILOT, SCENARIO = "DECKLANDER_COMPANION", "DECKLANDER_SIM_AUT
 PREFIXES = (COMPANION, SIM_AUTOPILOT, SCENARIO)
 _OURS = "DECKLANDER_"
 _BELOW = "__"
-_PARTS_MAX = 20  # of a dotted key; no setting lies a third as deep
+_TOLD = 60  # characters of what is far too long
 
 
 def load_settings(
@@ -85,7 +84,7 @@ def settings_of_options(given: Sequence[str] | None, above: Mapping[str, Any] | 
         above: laid over it: settings that have an option of their own.
 
     Raises:
-        UserError: one is no `KEY=VALUE`.
+        UserError: one is no `KEY=VALUE`, or no key or value of a configuration.
     """
     tables: dict[str, Any] = {}
     for one in given or ():
@@ -93,6 +92,7 @@ def settings_of_options(given: Sequence[str] | None, above: Mapping[str, Any] | 
         parts = key.strip().split(".")
         if not equals or not all(parts):
             raise UserError(f"--set {one}: is no KEY=VALUE; write it as section.key=value")
+        _check_text(f"--set {key}", parts, value)
         tables = merge(tables, _nested(parts, _value(value)))
     return merge(tables, above or {})
 
@@ -106,10 +106,14 @@ def settings_of_environment(
         prefix: one of `PREFIXES`.
         model: of the configuration: its keys are lower case, and what it leaves open keeps the case it has.
         environment: the variables.
+
+    Raises:
+        UserError: one is no key or value of a configuration.
     """
     tables: dict[str, Any] = {}
     for name in variables_of(prefix, environment):
         parts = name.removeprefix(prefix + _BELOW).split(_BELOW)
+        _check_text(f"environment: {name}", parts, environment[name])
         tables = merge(tables, _nested(_keys(parts, model), _value(environment[name])))
     return tables
 
@@ -130,19 +134,24 @@ def _keys(parts: Sequence[str], model: type[BaseModel]) -> list[str]:
     return keys
 
 
+def _check_text(told: str, parts: Sequence[str], value: str) -> None:
+    if len(parts) > DEPTH_MAX:
+        raise UserError(f"{told[:_TOLD]}...: has {len(parts)} parts, and no setting has more than {DEPTH_MAX}")
+    try:
+        "".join((*parts, value)).encode()
+    except UnicodeEncodeError:  # bytes that are none stand in it as surrogates
+        raise UserError(f"{told}: is not UTF-8; write it in UTF-8") from None
+
+
 def _nested(parts: Sequence[str], value: Any) -> dict[str, Any]:
-    if len(parts) > _PARTS_MAX:
-        raise UserError(f"{'.'.join(parts[:3])}...: a key has at most {_PARTS_MAX} parts; leave some out")
-    nested = value
-    for part in reversed(parts):
-        nested = {part: nested}
-    return cast("dict[str, Any]", nested)
+    first, *others = parts
+    return {first: _nested(others, value) if others else value}
 
 
 def _value(text: str) -> Any:
     """Return a value as TOML reads it; what is none, such as a bare word, is a text."""
     try:
-        table = tomllib.loads(f"value = {text}")
-    except (ValueError, RecursionError):  # no TOML, or an integer of thousands of digits
+        table = tables_of(f"value = {text}")
+    except (ValueError, RecursionError):  # no TOML, or none of a configuration
         return text
     return table["value"] if table.keys() == {"value"} else text

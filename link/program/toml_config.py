@@ -39,6 +39,9 @@ class StrictModel(BaseModel):
 
 Model = TypeVar("Model", bound=StrictModel)
 
+DEPTH_MAX = 20
+"""How deep a configuration may be nested: none is half as deep, and what goes through one calls itself."""
+
 
 def load_config(
     path: Path | None,
@@ -129,13 +132,36 @@ def parse_toml(text: str, source: str) -> dict[str, Any]:
         UserError: it is no TOML.
     """
     try:
-        return tomllib.loads(text)
+        return tables_of(text)
     except tomllib.TOMLDecodeError as error:
         raise UserError(f"{source}: not valid TOML ({error})") from None
     except ValueError as error:  # an integer of thousands of digits
         raise UserError(f"{source}: not valid TOML ({str(error).partition(';')[0]})") from None
     except RecursionError:
         raise UserError(f"{source}: not valid TOML (nested too deep)") from None
+
+
+def tables_of(text: str) -> dict[str, Any]:
+    """Return the tables of TOML.
+
+    Raises:
+        ValueError: it is none, or has an integer of thousands of digits.
+        RecursionError: it is nested deeper than any configuration.
+    """
+    table = tomllib.loads(text)
+    _check_size(table, DEPTH_MAX)
+    return table
+
+
+def _check_size(value: object, levels: int) -> None:
+    """Find out whether `value` has at most so many levels, and no integer that could not be printed."""
+    if levels < 0:
+        raise RecursionError
+    if isinstance(value, int):
+        str(value)
+    below = value.values() if isinstance(value, dict) else value if isinstance(value, list) else ()
+    for one in below:
+        _check_size(one, levels - 1)
 
 
 def _check(model: type[Model], table: Mapping[str, Any], source_of: Callable[[Location], str]) -> Model:
@@ -148,8 +174,6 @@ def _check(model: type[Model], table: Mapping[str, Any], source_of: Callable[[Lo
         # an unknown key goes first: misspelt, it is why another one is missing
         details = sorted(error.errors(include_url=False), key=lambda one: one["type"] != "extra_forbidden")
         raise UserError(report(details, model, source_of)) from None
-    except ValueError as error:  # a hexadecimal integer of thousands of digits
-        raise UserError(f"{source_of(())}: {str(error).partition(';')[0]}") from None
 
 
 def _is_in(location: Location, table: Mapping[str, Any]) -> bool:

@@ -130,6 +130,7 @@ def _hint(device: str, usual_port: int) -> str:
     host, colon, port = rest.rpartition(":")
     if not colon:
         host, port = ("127.0.0.1", rest) if rest.isdigit() else (rest, "")
-    if ":" in host:
-        host = f"[{host.strip('[]')}]" if host.strip("[]:") else "[::]"
-    return f"did you mean {near[0]}:{host or '127.0.0.1'}:{port or usual_port}?"
+    if ":" in host and not host.startswith("["):
+        return f"an IPv6 address goes into brackets, as in {near[0]}:[::1]:{port or usual_port}"
+    meant = f"{near[0]}:{host or '127.0.0.1'}:{port or usual_port}"
+    return f"write {FORMS}" if meant == device else f"did you mean {meant}?"

@@ -16,7 +16,8 @@ from scenarios.catalogue.firmware_option import cells_with
 from scenarios.config import Scenario
 from scenarios.recordings.versions import commit, versions
 
-_SEED_END = 2**63  # the table of landings has 64 bits with a sign
+_SEED_MAX = 2**63 - 1
+"""Of 64 bits with a sign, as which the results keep it."""
 
 
 class Plan(StrictModel):
@@ -82,11 +83,12 @@ def make_plan(
         given: single settings of it, by `--set`.
 
     Raises:
-        UserError: no such cell or firmware, two cells of one name, or a configuration that does not fit.
+        UserError: no such cell or firmware, two cells of one name, a seed that the results have no room for, or a
+            configuration that does not fit.
     """
+    if first_seed + seeds - 1 > _SEED_MAX:
+        raise UserError(f"--first-seed {first_seed} and --seeds {seeds}: the last seed must be at most {_SEED_MAX}")
     loaded = [load_cell(cell) for cell in cells_with(cells, firmware)]
-    if first_seed + seeds > _SEED_END:
-        raise UserError(f"--first-seed {first_seed}: {seeds} seeds from there on pass 2^63; give a smaller one")
     names = [cell.name for cell in loaded]
     double = next((name for name in names if names.count(name) > 1), None)
     if double is not None:

@@ -86,12 +86,12 @@ def _space_of(request: "Request") -> "Space":
             f"'{request.slice}' is no slice of the domain: give one of {', '.join(slices())};"
             " a scenario of the catalogue draws nothing that could be searched"
         )
-    if request.landings > HELD_BACK_FROM:
-        raise UserError(f"give --landings {HELD_BACK_FROM} or less: so many seeds are not held back")
     if request.seed + request.landings > HELD_BACK_FROM:  # a start has one landing at least
+        most = HELD_BACK_FROM - request.landings
+        fewer = f"--seed and --landings that make {HELD_BACK_FROM} or less"
         raise UserError(
             f"seeds from {HELD_BACK_FROM} on are held back for published figures:"
-            f" give --seed {HELD_BACK_FROM - request.landings} or less"
+            f" give {fewer if most < 0 else f'--seed {most} or less'}"
         )
     parts = sorted({name.partition(".")[0] for name in quantities(request.slice, request.seed)})
     unknown = next((part for part in request.only if part not in parts), None)

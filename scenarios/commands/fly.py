@@ -28,7 +28,7 @@ def fly_command(
     ship: Annotated[
         float | None,
         typer.Option(
-            "--ship", min=0.1, max=60.0, metavar="M_S", help="Land on ArduPilot's simulated ship at this speed."
+            "--ship", min=0.1, max=50.0, metavar="M_S", help="Land on ArduPilot's simulated ship at this speed."
         ),
     ] = None,
     sortie: Annotated[
@@ -55,9 +55,9 @@ def fly_command(
     from scenarios.firmware.options import FlyOptions
     from scenarios.recordings.run_folder import run_folder
 
-    scenario = load_changed_scenario(name, changes)
     for device in (mavlink, watch):
-        parse_device(device)  # a mistake is told before a folder is made
+        parse_device(device)  # a mistake is told before there is a folder, and before anybody is waited for
+    scenario = load_changed_scenario(name, changes)
     folder = run_folder(out, scenario.name)
     options = FlyOptions(
         mavlink=mavlink,

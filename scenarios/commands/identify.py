@@ -42,14 +42,12 @@ def identify_command(
     The autopilot takes off, flies for two minutes in real time within 50 m, 8 to 17 m up, and is left hovering: a
     simulation, or a drone in the open. Without --mavlink sim-autopilot flies alone, in lockstep.
     """
-    from scenarios.config import FIRMWARES
     from scenarios.identify.figures import figures
     from scenarios.identify.fit import fit_law
-    from scenarios.identify.flying import fly_endpoint, fly_stand_in
+    from scenarios.identify.flying import check_stand_in, fly_endpoint, fly_stand_in
 
     parameters = _parse(parameter or [])
-    if firmware not in (None, *FIRMWARES):
-        raise UserError(f"--firmware is one of {', '.join(FIRMWARES)}, not '{firmware}'")
+    check_stand_in(firmware, parameters)
     columns: list[Column] = []
     if mavlink is not None:
         flight = fly_endpoint(mavlink, _tell)

@@ -97,7 +97,7 @@ def _write_layout(path: Path, keys: "Keys") -> None:
     try:
         path.write_text(layout_json(keys) + "\n", encoding="utf-8")
     except OSError as error:
-        raise UserError(f"{path}: cannot be written ({error.strerror}); choose another place") from error
+        raise UserError(f"{path}: cannot be written ({error.strerror}); choose another --foxglove-layout") from error
 
 
 def _road_of(name: str, seed: int | None) -> "Road":

@@ -2,12 +2,14 @@
 
 import time
 from collections.abc import Callable
+from contextlib import suppress
 
 import numpy as np
 
 from link.errors import UserError
 from link.transports.opening import open_transport
 from scenarios.identify.pilot import Flight, Pilot, Stage
+from sim_autopilot.memory import AutopilotConfig
 from sim_autopilot.runtime.build import autopilot_config
 from sim_autopilot.runtime.config import DroneConfig, SimAutopilotConfig
 from sim_autopilot.runtime.node import AutopilotNode
@@ -50,6 +52,36 @@ def fly_stand_in(firmware: str, parameters: dict[str, float]) -> Flight:
     Raises:
         UserError: a parameter does not exist or is out of range.
     """
+    node, pilot = AutopilotNode(_stand_in(firmware, parameters), _LOCAL_NS), Pilot(f"stand-in of {firmware}")
+    while not pilot.is_done:
+        (sent,) = node.step(None, _AIR)
+        now_ns = node.state.t_ns
+        pilot.receive(sent, now_ns)
+        for frame in pilot.poll(now_ns):
+            for answer in node.receive(frame, now_ns):
+                pilot.receive(answer, now_ns)
+    return pilot.flight()
+
+
+def check_stand_in(firmware: str | None, parameters: dict[str, float]) -> None:
+    """Find out before a flight whether there can be a stand-in.
+
+    Args:
+        firmware: that is flown, None for the autopilot's, which is not known yet.
+        parameters: by name.
+
+    Raises:
+        UserError: there is no such firmware, or none that is meant has these parameters.
+    """
+    *others, last = AIRFRAMES if firmware is None else (firmware,)
+    for one in others:
+        with suppress(UserError):
+            _stand_in(one, parameters)
+            return
+    _stand_in(last, parameters)
+
+
+def _stand_in(firmware: str, parameters: dict[str, float]) -> AutopilotConfig:
     if firmware not in AIRFRAMES:
         raise UserError(f"there is no stand-in for '{firmware}': give one of {', '.join(AIRFRAMES)}")
     config = SimAutopilotConfig.model_validate(
@@ -61,12 +93,4 @@ def fly_stand_in(firmware: str, parameters: dict[str, float]) -> Flight:
             "parameters": parameters,
         }
     )
-    node, pilot = AutopilotNode(autopilot_config(config), _LOCAL_NS), Pilot(f"stand-in of {firmware}")
-    while not pilot.is_done:
-        (sent,) = node.step(None, _AIR)
-        now_ns = node.state.t_ns
-        pilot.receive(sent, now_ns)
-        for frame in pilot.poll(now_ns):
-            for answer in node.receive(frame, now_ns):
-                pilot.receive(answer, now_ns)
-    return pilot.flight()
+    return autopilot_config(config)

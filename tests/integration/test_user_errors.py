@@ -117,24 +117,16 @@ MISTAKES = [
     ("companion", "--timeout nan", ["--timeout nan", "a number, 0 or more"]),
     ("scenarios", "run straight_5 --seed 1.5", ["--seed 1.5", "a whole number, 0 or more"]),
     ("scenarios", "bench --pairs -3", ["--pairs -3", "--against FOLDER"]),
-    ("scenarios", f"campaign straight_5 --first-seed {2**63 - 1} --seeds 2", ["--first-seed", "smaller"]),
-    ("scenarios", "view --foxglove-layout none/layout.json", ["none/layout.json", "choose another place"]),
-    ("scenarios", "fly straight_5 --mavlink foo", ["device 'foo'", "udpin:HOST:PORT"]),
-    ("scenarios", "fly straight_5 --watch foo", ["device 'foo'", "udpin:HOST:PORT"]),
-    ("scenarios", "fly straight_5 --ship inf", ["--ship inf", "60"]),
-    ("scenarios", "identify --mavlink udpin:127.0.0.1:{udp} --firmware foo", ["--firmware", "px4, ardupilot", "foo"]),
-    ("scenarios", "falsify world --landings 600000", ["--landings 500000 or less"]),
-    ("companion", f"{FREE} --set descent.cone.slope=0x{'f' * 5000} --print-config", ["Exceeds the limit"]),
-    ("companion", f"--set {'a.' * 3000}b=1 --print-config", ["a.a.a...", "20 parts"]),
-    ("sim-autopilot", "--mavlink udpin:::14540", ["udpin:[::]:14540"]),
-    ("ground-vehicle", "--nmea none --seed 0 --timeout 60", ["--seed and --timeout:", "--scenario"]),
+    ("ground-vehicle", "--nmea udpin:127.0.0.1:0 --seed 0 --timeout 60", ["--seed and --timeout:", "--scenario"]),
     ("ground-vehicle", "--gpsd 127.0.0.1 --use-sim-time", ["--use-sim-time:", "leave that out"]),
     ("ground-vehicle", "--mavlink udpin:127.0.0.1:0 --depart-at-once", ["--depart-at-once:", "leave that out"]),
     ("companion", f"{FREE} --signing-stamps none.stamps", ["--signing-stamps", "give --signing-key"]),
     ("companion", f"check {FREE} --signing-stamps none.stamps", ["--signing-stamps", "give --signing-key"]),
+    ("scenarios", "fly straight_5 --ship inf", ["--ship inf", "from 0.1 to 50"]),
     ("scenarios", "view none --road straight_5", ["none", "leave out --road"]),
     ("scenarios", "view none --seed 3", ["--seed", "give --road"]),
     ("scenarios", "view --seed 3", ["--seed", "give --road"]),
+    ("scenarios", "view --foxglove-layout none/layout.json", ["none/layout.json", "another --foxglove-layout"]),
     ("scenarios", "run straight_5 --lockstep --speed 1", ["--lockstep", "leave out --speed"]),
     ("scenarios", "table none --seeds 5 --workers 1", ["--seeds and --workers", "leave them out with none"]),
     ("scenarios", "table none --markdown --json", ["--markdown and --json", "one of them"]),
@@ -180,6 +172,15 @@ def test_a_mistake_is_one_line_that_names_it_and_exit_code_2(
     assert err.startswith(f"{name}: ")
     for word in words:
         assert word.format(**here) in err
+
+
+@pytest.mark.parametrize("option", ["--mavlink", "--watch"])
+def test_flight_with_a_wrong_device_makes_no_folder(
+    here: dict[str, str], capfd: pytest.CaptureFixture[str], option: str
+) -> None:
+    assert run_app("scenarios", APPS["scenarios"], ["fly", "straight_5", "--out", "flown", option, "foo"]) == 2
+    assert "device 'foo' has no known form" in capfd.readouterr().err
+    assert not (Path(here["folder"]) / "flown").exists()
 
 
 @pytest.mark.parametrize("arguments", ["companion --print-config", "scenarios list", "companion --help"])

@@ -55,8 +55,9 @@ def test_another_process_s_watchdog_is_not_fed(manager: socket.socket) -> None:
 
 
 @pytest.mark.parametrize("environ", [{}, {"NOTIFY_SOCKET": "/nowhere/at/all"}, {"NOTIFY_SOCKET": "relative"}])
-def test_without_a_manager_nothing_happens(environ: dict[str, str]) -> None:
-    service = Service(environ | {"WATCHDOG_USEC": "1000"})
+@pytest.mark.parametrize("watchdog_us", ["1000", "²"])
+def test_without_a_manager_nothing_happens(environ: dict[str, str], watchdog_us: str) -> None:
+    service = Service(environ | {"WATCHDOG_USEC": watchdog_us})
     service.ready()
     service.alive(0)
     service.close()

@@ -87,6 +87,38 @@ def test_what_is_no_key_and_value_is_told_how_to_write_it(text: str) -> None:
 @pytest.mark.parametrize(
     ("setting", "told"),
     [
+        (f"{'.'.join('a' * 3000)}=1", r"^--set a\.a\..*\.\.\.: has 3000 parts, and no setting has more than 20$"),
+        ("descent.cone.slope=\udcff\udcfe", r"^--set descent\.cone\.slope: is not UTF-8; write it in UTF-8$"),
+        ("descent.c\udcff=1", r"^--set descent\.c\udcff: is not UTF-8"),
+        (f"descent={{{'.'.join('a' * 3000)}=1}}", r"^command line: descent = .* does not fit"),
+        (f"descent.cone.slope=0x{'f' * 5000}", r"^command line: descent\.cone\.slope = .* does not fit"),
+    ],
+)
+def test_setting_that_is_none_of_a_configuration_is_one_line(setting: str, told: str) -> None:
+    with pytest.raises(UserError, match=told) as refused:
+        load(setting)
+    assert len(str(refused.value)) < 200
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "told"),
+    [
+        (f"{COMPANION}{'__A' * 2000}", "1", f"^environment: {COMPANION}__A__A.*: has 2000 parts"),
+        (VARIABLE, "\udcff", f"^environment: {VARIABLE}: is not UTF-8"),
+        (VARIABLE, f"0x{'f' * 5000}", r"^environment: descent\.cone\.slope = .* does not fit"),
+    ],
+)
+def test_variable_that_is_none_of_a_configuration_is_one_line(
+    name: str, value: str, told: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv(name, value)
+    with pytest.raises(UserError, match=told):
+        load()
+
+
+@pytest.mark.parametrize(
+    ("setting", "told"),
+    [
         ("slope=0.3", "command line: unknown key 'slope', did you mean descent.cone.slope?"),
         ("descent.cone.slop=0.3", "command line: unknown key 'descent.cone.slop', did you mean 'slope'?"),
         ("descent.cone.slope=steep", 'command line: descent.cone.slope = "steep" does not fit'),

@@ -52,6 +52,12 @@ def test_plan_holds_slices_by_their_names_however_many_worlds_they_are() -> None
     assert Plan.model_validate_json(json.dumps(many.model_dump(mode="json"))) == many
 
 
+def test_seed_that_the_results_have_no_room_for_is_refused_before_anything_is_flown() -> None:
+    assert make_plan(["straight_5"], first_seed=2**63 - 2, seeds=2, config=None).seed_range[-1] == 2**63 - 1
+    with pytest.raises(UserError, match=f"the last seed must be at most {2**63 - 1}$"):
+        make_plan(["straight_5"], first_seed=2**63 - 1, seeds=2, config=None)
+
+
 def test_plan_mixes_slices_and_scenarios() -> None:
     plan = make_plan(["world:yard", "straight_5"], first_seed=1, seeds=1, config=None)
     assert {name: type(cell) for name, cell in plan.flown.items()} == {"world:yard": Population, "straight_5": Scenario}

@@ -26,6 +26,8 @@ def test_what_is_no_slice_is_refused_with_those_there_are(name: str, capsys: pyt
 def test_search_keeps_off_the_seeds_that_are_held_back(seed: int, capsys: pytest.CaptureFixture[str]) -> None:
     assert scenarios("falsify", "world", "--landings", 50, "--seed", seed) == 2
     assert "held back for published figures: give --seed 499950 or less" in capsys.readouterr().err
+    assert scenarios("falsify", "world", "--landings", 600_000, "--seed", seed) == 2
+    assert "give --seed and --landings that make 500000 or less" in capsys.readouterr().err
 
 
 def test_folder_that_is_in_use_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

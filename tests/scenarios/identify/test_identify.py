@@ -98,3 +98,18 @@ def test_what_cannot_be_flown_is_said_in_one_line(arguments: tuple[str, ...], to
     text = str(result.exception)
     assert told in text
     assert "\n" not in text
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        (["--firmware", "inav"], "no stand-in for 'inav'"),
+        (["--parameter", "NOPE=1"], "no parameter NOPE"),
+        (["--firmware", "px4", "--parameter", "MPC_XY_P=1e9"], "MPC_XY_P = 1000000000.0 is not between"),
+        (["--parameter", "WPNAV_SPEED=500"], "has no known form"),  # of ArduPilot, which may be there
+    ],
+)
+def test_what_the_stand_in_cannot_be_is_told_before_an_autopilot_is_met(options: list[str], told: str) -> None:
+    result = CliRunner().invoke(app, ["identify", "--mavlink", "foo", *options])
+    assert isinstance(result.exception, UserError)
+    assert told in str(result.exception)
