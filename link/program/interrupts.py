@@ -1,8 +1,8 @@
 """Ctrl-C as a program takes it: as a KeyboardInterrupt, or as the end at once where one would not get through.
 
-Imports, numba's compiler and what its kernels call to return a value catch what is raised within them, so that a
-KeyboardInterrupt is lost there or becomes another error. There the process ends instead: whatever it has written can be
-read however far it came.
+Imports and numba's compiler catch what is raised within them, so that a KeyboardInterrupt is lost there or becomes
+another error; so does machine code whose result numba makes a Python value. There the process ends instead: whatever
+it has written can be read however far it came.
 
 This is what a program imports first, so it imports nothing that takes time itself.
 """
@@ -15,8 +15,7 @@ from types import FrameType, TracebackType
 from link.program.exit_codes import EXIT_INTERRUPTED
 
 COMPILING = "compiling the numerics, as after an installation or an update; this takes a minute or two"
-
-_RETURNS_BY = "_numba_unpickle"  # in numba.core.serialize
+_BOXING = "_numba_unpickle"  # of numba.core.serialize
 
 
 class _Process:
@@ -58,11 +57,18 @@ def interrupt(_number: int, frame: FrameType | None) -> None:
     """Handle a signal as described above.
 
     Raises:
-        KeyboardInterrupt: outside of the blocks that none gets through.
+        KeyboardInterrupt: where one gets through.
     """
-    if _Process.blocks or (frame is not None and frame.f_code.co_name == _RETURNS_BY):
+    if _Process.blocks or _is_boxing(frame):
         os._exit(EXIT_INTERRUPTED)
     raise KeyboardInterrupt
+
+
+def _is_boxing(frame: FrameType | None) -> bool:
+    """Return whether numba makes a Python value of a kernel's result, and would not notice that this raised."""
+    while frame is not None and frame.f_code.co_name != _BOXING:
+        frame = frame.f_back
+    return frame is not None
 
 
 def begin_compiling() -> None:
