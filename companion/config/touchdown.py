@@ -23,7 +23,7 @@ class LevelConfig(StrictModel):
 
     height_m: NotNegative = 0.08
     late_stds: NotNegative = 1.5  # of the link's delay, by which it begins earlier: so late a setpoint may be
-    # Beyond steady flight. S2 allows 10 degrees, 1.7 m/s^2: less by a gust of 3 m/s, which is taken for steady flight.
+    # Beyond steady flight, for which a gust of 3 m/s is taken, too: that takes 0.7 of the 1.7 m/s^2 (10 degrees) of S2.
     acceleration_m_s2: Positive = 1.0
     speed_max_m_s: Positive = 0.35  # that this may bring against the pad; S2 asks for 0.5 at contact
 

@@ -176,12 +176,14 @@ def _make(folder: Path) -> None:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise UserError(f"{folder}: cannot be recorded into ({error.strerror}); choose another place") from error
+    if not os.access(folder, os.W_OK | os.X_OK):
+        raise UserError(f"{folder}: cannot be written; choose another place")
 
 
 def _problem(path: Path) -> str | None:
     """Return why a file cannot be written."""
     folder = path.parent
-    if not os.access(folder, os.F_OK):
+    if not folder.is_dir():
         return f"there is no folder {folder}; make it or choose another place"
     if not os.access(folder, os.W_OK | os.X_OK):
         return f"the folder {folder} cannot be written; choose another place"

@@ -36,7 +36,7 @@ from companion.vehicle.imm_frames import moved_frame, own_rate_opened_m2_s2, ran
 from companion.vehicle.imm_kernels import CURVATURE, HEADING
 from companion.vehicle.imm_mixing import Modes
 from companion.vehicle.imm_numbers import Deck, Numbers, noises_with, numbers_of, turns_as_modelled
-from companion.vehicle.imm_spin import believed_spin_rad_s, spins, spun, without_spin
+from companion.vehicle.imm_spin import spins, spun, without_spin
 from companion.vehicle.imm_state import (
     KINDS,
     OFFSET,
@@ -84,7 +84,7 @@ class ImmModel:
 
     def predict(self, state: ImmState, dt_s: float) -> ImmState:
         """Return the state `dt_s` later."""
-        state = spun(state, dt_s, self.config, self.numbers) if state.spin_rad_s else state
+        state = spun(state, dt_s, self.config, self.numbers) if state.spin.told_rad_s else state
         noises, begins_after_s, motion = self._noises(state), self.numbers.begins_after_s, self._motion(state)
         modes = mixing.predict_modes(state.modes, dt_s, noises, begins_after_s, motion, self._known_variance)
         return replace(
@@ -173,7 +173,7 @@ class ImmModel:
             acceleration_enu_m_s2=told[6:],
             covariance=0.5 * (covariance + covariance.T),
             yaw_rad=wrapped(float(x[HEADING])) if known else None,
-            yaw_rate_rad_s=float(x[CURVATURE] * math.hypot(x[2], x[3])) + believed_spin_rad_s(state) if known else None,
+            yaw_rate_rad_s=float(x[CURVATURE] * math.hypot(x[2], x[3])) + state.spin.rad_s if known else None,
             mixture=Mixture(weight=state.modes[2], off=pad_off, covariance=pad_covariance),
         )
 

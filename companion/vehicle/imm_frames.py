@@ -27,31 +27,26 @@ def wandering(state: ImmState, receivers: ReceiversConfig) -> tuple[float, float
     return receiver_m2_s, receivers.own_walk_share * bias_m2_s, _own_rate_m2_s3(state, receivers)
 
 
-_ENDS_SHARE = 0.25  # of a slow error's variance: a receiver that states half of it has another kind of solution
-
-
 def without_slow_error(state: ImmState, bias_variance_m2: float, receivers: ReceiversConfig) -> ImmState:
-    """Return the state as a fix comes whose slow error is so much smaller that the one of before has ended.
+    """Return the state as the first corrected fix comes: the slow error of those before has ended.
 
     The offset was that of the frames and the slow error in one. On an axis on which less is known of it than before any
-    fix, it begins anew, and the place is where the fixes have it, but for their error of before. Corrected fixes are
-    dated without an error, too.
+    fix, it begins anew. The place is then where the fixes have it, and is uncertain by the slow error that they had.
+    Corrected fixes are dated without an error, too.
 
     Args:
         state: before the fix.
-        bias_variance_m2: of the fix's slow error.
+        bias_variance_m2: of the fix's slow error, 0 of a corrected one.
         receivers: of both.
     """
-    before_m2, anew_m2 = state.fix_bias_variance_m2, receivers.frame_offset_std_m**2 + bias_variance_m2
-    if bias_variance_m2 >= _ENDS_SHARE * before_m2:
+    before_m2, anew_m2 = state.fix_bias_variance_m2, receivers.frame_offset_std_m**2
+    if bias_variance_m2 > 0.0 or before_m2 == 0.0:
         return state
     means, covariances, weights = state.modes
     is_unknown = weights @ covariances[:, OFFSET, OFFSET] > anew_m2
     place, offset = PLACE[is_unknown], OFFSET[is_unknown]
     by_fixes = np.eye(SIZE)
-    by_fixes[place, offset], by_fixes[offset, offset] = -1.0, 0.0
-    if bias_variance_m2 == 0.0:
-        by_fixes[CLOCK, CLOCK] = 0.0
+    by_fixes[place, offset], by_fixes[offset, offset], by_fixes[CLOCK, CLOCK] = -1.0, 0.0, 0.0
     modes = (means @ by_fixes.T, by_fixes @ covariances @ by_fixes.T, weights)
     means, covariances, weights = open_states(modes, place, np.full(len(place), before_m2))
     anew = open_place_and_offset(covariances, np.diag(np.where(is_unknown, anew_m2, 0.0)))

@@ -22,6 +22,7 @@ from companion.vehicle.imm_mixing import Modes
 from companion.vehicle.imm_numbers import Numbers
 from companion.vehicle.imm_sensors import observe
 from companion.vehicle.imm_swing import MOUNT, OWN_RATE, ROLL, SIZE, UNIT_HEADING
+from companion.vehicle.spin import NO_SPIN, Spin
 from companion.vehicle.steady_driving import SteadyDriving
 from link.records import replace
 
@@ -84,11 +85,7 @@ class ImmState(Struct, frozen=True, kw_only=True, eq=False):
         height_age_s: how long ago that or a range told how high it is for the drone; infinite before.
         turn_age_s: how long ago a sensor told the heading or the yaw rate.
         heading_bias_variance_rad2: of what a unit tells of the heading too much for long; 0 until it tells one.
-        spin_rad_s: how fast the vehicle turns on the spot, as its gyro tells.
-        spin_told_s: for how long that has been told.
-        spin_turned_rad: how far it has turned so.
-        spin_denied_rad: what told headings have shown beside that turn.
-        spin_left_s: for how long it goes on without another yaw rate.
+        spin: how the vehicle turns on the spot.
         unmeasured_s: how long ago place or velocity was told.
         deck: how the deck swings; None until the vehicle has told its tilt.
         sway: how its body sways that does not tell its tilt; None until the vehicle is known well enough, and then.
@@ -102,11 +99,7 @@ class ImmState(Struct, frozen=True, kw_only=True, eq=False):
     height_age_s: float = math.inf
     turn_age_s: float = math.inf
     heading_bias_variance_rad2: float = 0.0
-    spin_rad_s: float = 0.0
-    spin_told_s: float = 0.0
-    spin_turned_rad: float = 0.0
-    spin_denied_rad: float = 0.0
-    spin_left_s: float = 0.0
+    spin: Spin = NO_SPIN
     unmeasured_s: float = 0.0
     deck: DeckMotion | None = None
     sway: BodySway | None = None

@@ -123,7 +123,7 @@ class BackgroundRecorder:
         """Take one record."""
         size = self._size_of(record)
         with self._lock:
-            while self._keeps_newest and self._waiting and not self._has_room(size):
+            while self._keeps_newest and self._waiting and size <= _BYTES_MAX and not self._has_room(size):
                 self._dropped_full += 1
                 self._take()
             if self._has_room(size):

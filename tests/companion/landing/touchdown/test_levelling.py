@@ -54,7 +54,9 @@ def test_a_leaning_drone_is_levelled_as_much_higher_as_its_lowest_foot_hangs_dow
 @pytest.mark.parametrize(
     "turns_m_s2", [0.0, 1.25, 2.7], ids=["straight on", "20 m at 5 m/s", "harder than it may lean"]
 )
-def test_a_drone_above_a_turning_pad_leans_no_more_than_it_may_beyond_steady_flight(turns_m_s2: float) -> None:
+def test_a_drone_that_can_come_upright_in_time_leans_no_more_than_it_may_beyond_steady_flight(
+    turns_m_s2: float,
+) -> None:
     stiff = replace(LIMITS, jerk_max_m_s3=40.0)
     assert _levelled_m_s2(situation(0.05, pad=_turning(turns_m_s2)), stiff) == pytest.approx(LEVEL_M_S2)
 
@@ -68,10 +70,10 @@ def test_a_drone_comes_upright_from_the_lean_that_turn_and_air_take_together(
     air_enu_m_s2: tuple[float, float], leans_m_s2: float
 ) -> None:
     air, facts = np.array(air_enu_m_s2), situation(0.05, pad=_turning(3.5))
-    less_m_s2 = 6.0 - _levelled_m_s2(situation(0.05, pad=_turning(6.0)))
+    less_m_s2 = 1.606  # x of x^2 / 2j + x t = 0.35 m/s, in the t of 0.08 m at 0.45 m/s, at a jerk j of 20 m/s^3
     levelled_m_s2 = _levelled_m_s2(facts, memory=_holding(air, air))
     steady_m_s2 = math.hypot(*air_enu_m_s2)
-    assert levelled_m_s2 == pytest.approx(max(steady_m_s2 + LEVEL_M_S2, leans_m_s2 - less_m_s2))
+    assert levelled_m_s2 == pytest.approx(max(steady_m_s2 + LEVEL_M_S2, leans_m_s2 - less_m_s2), abs=0.001)
 
 
 @given(turns_m_s2=st.floats(0.0, 9.0), jerk_m_s3=st.floats(2.0, 40.0))
