@@ -43,7 +43,7 @@ def _warm_up(kind: EstimatorKind) -> None:
     sizes = {Quantity.HEADING: 1, Quantity.YAW_RATE: 1, Quantity.ACCELERATION: 1, Quantity.TILT: 4, Quantity.SURFACE: 4}
     sizes[Quantity.FRAME_STEP] = 6
     memory: EstimatorMemory | None = None
-    turns = (Quantity.YAW_RATE, Quantity.VELOCITY)  # on the spot, as the first tells
+    turns = (*10 * [Quantity.YAW_RATE], Quantity.VELOCITY)  # on the spot, as the first tell for long enough
     for i, quantity in enumerate((*Quantity, *Quantity, *turns)):
         value = np.full(sizes.get(quantity, 3), 0.1 if i < 2 * len(Quantity) else 3.0)
         covariance = 1e-2 * np.eye(len(value))  # so sure that it settles, and takes a tilt, too

@@ -118,7 +118,7 @@ for i in range(100):
         for one, value in told.items()
     ])
     estimator.forecast(memory, i * 10**8, np.array([0.0, 1.0]))
-spin_rad_s = memory.newest.state.spin_rad_s
+spin_rad_s = memory.newest.state.spin.rad_s
 print("" if spin_rad_s else "it does not turn", end="")
 tell_new(before)
 """
