@@ -122,7 +122,7 @@ def _fly(path: Array, samples: Samples, sample: int, descent: Descent, out: Arra
         beside[:] = holds + GRAVITY_M_S2 * course.slope[_contact_at(k, height_m, sink_m_s, steps)]
         leans = expected + model[2] + beside
         levels = _levels(height_m - lowest_m, sink_m_s, math.hypot(leans[0], leans[1]), drone)
-        most_m_s2 = drone.level_m_s2 if levels else drone.level_m_s2 + GRAVITY_M_S2
+        most_m_s2 = drone.level_m_s2 if levels else drone.level_m_s2 + GRAVITY_M_S2  # more than any plan leans
         before_m_s2[:] = model[2]
         bounds = (drone.jerk_max_m_s3, drone.acceleration_max_m_s2, most_m_s2)
         jerk = steer(model, state, off, known, drone) if k * DT_S >= samples.ahead_s[sample] else (0.0, 0.0)

@@ -26,8 +26,8 @@ from link.program.clock import Clock, ClockTick, SimulatedClock, SystemClock, sp
 from link.program.service import Service
 from link.recording.log import Log
 from link.recording.recorder import BackgroundRecorder, Recorder
-from link.zenoh.inbox import SENSOR_BYTES_MAX
 from link.zenoh.pad_question import PadQuestion
+from link.zenoh.session import SENSOR_BYTES_MAX
 
 _WAIT_MAX_S = 0.005  # for bytes; Zenoh samples wait no longer than this
 
@@ -174,7 +174,7 @@ class _Loop:
     def _take_samples(self) -> None:
         for inbox in self._inboxes:
             for sample in inbox.take():
-                self._fix_seen = self._fix_seen or inbox is self._inboxes[0]
+                self._fix_seen = self._fix_seen or sample.key == self._keys.fix
                 self._node.receive_sample(sample.key, sample.payload)
         self._node.receive_liveliness(alive=self._alive.alive)
         self._node.receive_rival(self._claims.rival)

@@ -70,7 +70,8 @@ def spun(state: ImmState, dt_s: float, config: ImmConfig, numbers: Numbers) -> I
         numbers: the same as the kernels take them.
     """
     spin = state.spin
-    state = _turned_for(state, spin.rad_s, min(dt_s, spin.left_s), config, numbers)
+    if spin.rad_s:
+        state = _turned_for(state, spin.rad_s, min(dt_s, spin.left_s), config, numbers)
     return replace(state, spin=passed(spin, dt_s))
 
 

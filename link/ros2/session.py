@@ -26,7 +26,7 @@ from link.zenoh.inbox import Inbox
 from link.zenoh.keys import Keys
 from link.zenoh.library_config import open_library_session
 from link.zenoh.options import ZenohOptions
-from link.zenoh.session import INBOX_CAPACITY, Alive, Sample, ZenohSession
+from link.zenoh.session import INBOX_CAPACITY, Alive, Sample, ZenohSession, taken
 
 _FRAMES_MAX = 1000  # of a robot; what is told beyond them is no robot's
 
@@ -58,7 +58,10 @@ class PadSource:
     def answer(self) -> bytes | None:
         """Return the pad as a payload, None while it is not known; empty, and so bad, if no vehicle has such a pad."""
         pad = self.geometry()
-        return None if pad is None else changed(lambda _: json_messages.encode(pad), b"")
+        try:
+            return None if pad is None else json_messages.encode(pad)
+        except PayloadError:
+            return b""
 
     def _learn(self, payload: bytes) -> None:
         try:
@@ -118,26 +121,15 @@ class Ros2Session(ZenohSession):
             return super().is_heard(key, encoding)
         return self._ros_publisher(route).is_heard
 
-    def subscribe(
-        self,
-        key: str,
-        *,
-        capacity: int = INBOX_CAPACITY,
-        bytes_max: int | None = None,
-        sample_bytes_max: int | None = None,
-    ) -> Inbox:
-        """Return the inbox of all that is published on `key`, or on its topic; the samples carry `key`."""
+    def _fill(self, inbox: Inbox, key: str, sample_bytes_max: int | None) -> None:
+        """Let come into `inbox` what is published on `key`, or on its topic; the samples carry `key`."""
         route = self._routes.get(key)
         if route is None:
-            return super().subscribe(key, capacity=capacity, bytes_max=bytes_max, sample_bytes_max=sample_bytes_max)
-        inbox = Inbox(capacity=capacity, wake_up=self.wake_up, bytes_max=bytes_max, sample_bytes_max=sample_bytes_max)
-        self._held.append(
-            self._session.declare_subscriber(
-                self._node.data_key(route.endpoint), self._into(inbox, key, route.from_ros)
-            )
-        )
+            super()._fill(inbox, key, sample_bytes_max)
+            return
+        receive = self._into(inbox, key, route.from_ros, sample_bytes_max)
+        self._held.append(self._session.declare_subscriber(self._node.data_key(route.endpoint), receive))
         self._node.declare(EntityKind.SUBSCRIPTION, route.endpoint, Qos())
-        return inbox
 
     def watch_alive(self, key: str) -> Alive:
         """Return whether there is a token on `key`; for the vehicle's, whether anybody publishes its position."""
@@ -203,10 +195,12 @@ class Ros2Session(ZenohSession):
         self._node.declare(EntityKind.SUBSCRIPTION, endpoint, LATCHED)
         return inbox
 
-    def _into(self, inbox: Inbox, key: str, change: Callable[[bytes], bytes]) -> Callable[[zenoh.Sample], None]:
+    def _into(
+        self, inbox: Inbox, key: str, change: Callable[[bytes], bytes], bytes_max: int | None = None
+    ) -> Callable[[zenoh.Sample], None]:
         def receive(sample: zenoh.Sample) -> None:
             if inbox.has_room(len(sample.payload)):
-                inbox.put(Sample(key, changed(change, sample.payload.to_bytes()), self._receive_clock_ns()))
+                inbox.put(Sample(key, changed(change, taken(sample.payload, bytes_max)), self._receive_clock_ns()))
 
         return receive
 

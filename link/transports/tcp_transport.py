@@ -201,7 +201,7 @@ class TcpServerTransport(Transport):
         self._listener.close()
 
     def _accept(self, kept: Set[int | None]) -> None:
-        """Takes a client that has come; where there is no room, another one goes, but none of `kept`."""
+        """Take a client that has come; where there is no room, another one goes, but none of `kept`."""
         try:
             connected = self._listener.accept()[0]
         except OSError:  # nobody new, or gone again before it was served

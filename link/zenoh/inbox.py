@@ -6,8 +6,6 @@ import threading
 from collections import deque
 from typing import NamedTuple
 
-SENSOR_BYTES_MAX = 8192
-"""Of one fix, velocity, IMU or sighting; a ROS odometry takes 0.7 kB and its names. What is larger no sensor sends."""
 _SAMPLE_BYTES = 1024  # more than a fix, a velocity, an IMU or a status take
 _BYTES_MIN = 1 << 18  # for a few that are larger, such as plans
 
@@ -69,17 +67,13 @@ class Inbox:
     Args:
         capacity: samples.
         wake_up: is set by each.
-        bytes_max: of all together.
-        sample_bytes_max: of one, by default as much as of all; a larger one is dropped itself.
+        bytes_max: of all together; a sample that is larger than that is dropped itself.
     """
 
-    def __init__(
-        self, *, capacity: int, wake_up: WakeUp, bytes_max: int | None = None, sample_bytes_max: int | None = None
-    ) -> None:
+    def __init__(self, *, capacity: int, wake_up: WakeUp, bytes_max: int | None = None) -> None:
         self._samples: deque[Sample] = deque()
         self._capacity = capacity
         self._bytes_max = max(_BYTES_MIN, capacity * _SAMPLE_BYTES) if bytes_max is None else bytes_max
-        self._sample_bytes_max = self._bytes_max if sample_bytes_max is None else sample_bytes_max
         self._bytes = 0
         self._wake_up = wake_up
         self._lock = threading.Lock()
@@ -92,7 +86,7 @@ class Inbox:
 
     def has_room(self, size: int) -> bool:
         """Return whether a sample of `size` bytes would be kept, and count it as dropped where it would not."""
-        if size <= min(self._bytes_max, self._sample_bytes_max):
+        if size <= self._bytes_max:
             return True
         with self._lock:
             self._dropped += 1

@@ -23,7 +23,14 @@ from link.zenoh.replies import Replies
 __all__ = ["DEFAULT_ENDPOINT", "Alive", "Inbox", "Sample", "WakeUp", "ZenohOptions", "ZenohSession", "open_session"]
 
 INBOX_CAPACITY = 1024
+SENSOR_BYTES_MAX = 8192
+"""Of one fix, velocity, IMU or sighting; a ROS odometry takes 0.7 kB and its names. What is larger no sensor sends."""
 """Ten seconds of a 100 Hz stream."""
+
+
+def taken(payload: zenoh.ZBytes, bytes_max: int | None) -> bytes:
+    """Return the bytes of a payload, none of one that is larger than it may be."""
+    return b"" if bytes_max is not None and len(payload) > bytes_max else payload.to_bytes()
 
 
 class ZenohSession:
@@ -74,15 +81,25 @@ class ZenohSession:
         bytes_max: int | None = None,
         sample_bytes_max: int | None = None,
     ) -> Inbox:
-        """Return the inbox of all that is published on `key`, which may hold wildcards."""
-        inbox = Inbox(capacity=capacity, wake_up=self.wake_up, bytes_max=bytes_max, sample_bytes_max=sample_bytes_max)
+        """Return the inbox of all that is published on `key`, which may hold wildcards.
 
+        Args:
+            key: of the samples.
+            capacity: of the inbox, in samples.
+            bytes_max: likewise.
+            sample_bytes_max: of one; a larger one comes as an empty one, which its reader counts as bad.
+        """
+        inbox = Inbox(capacity=capacity, wake_up=self.wake_up, bytes_max=bytes_max)
+        self._fill(inbox, key, sample_bytes_max)
+        return inbox
+
+    def _fill(self, inbox: Inbox, key: str, sample_bytes_max: int | None) -> None:
         def receive(sample: zenoh.Sample) -> None:
             if inbox.has_room(len(sample.payload)):
-                inbox.put(Sample(str(sample.key_expr), sample.payload.to_bytes(), self._receive_clock_ns()))
+                payload = taken(sample.payload, sample_bytes_max)
+                inbox.put(Sample(str(sample.key_expr), payload, self._receive_clock_ns()))
 
         self._held.append(self._session.declare_subscriber(key, receive))
-        return inbox
 
     def declare_alive(self, key: str) -> Callable[[], None]:
         """Show, by a token on `key`, that this program lives; the token goes when the session closes or dies.

@@ -9,6 +9,7 @@ from companion.runtime.node import CompanionNode
 from companion.runtime.options import Timings
 from link.messages import Command, CommandReply, Order
 from link.payloads import json_messages as json_payloads
+from scenarios.attack.flood import order_of_many_names
 from tests.companion.peer import Setup
 
 ACCEPTED = CommandReply(accepted=True, reason="")
@@ -67,7 +68,7 @@ def test_of_two_stations_at_once_the_later_is_followed(node: CompanionNode, aske
 
 def test_an_order_that_no_operator_writes_is_refused_unread(node: CompanionNode, asked: list[Command]) -> None:
     desk = CommandDesk()
-    refused = Asker(desk, b'{"command": "abort"' + b" " * 1024 + b"}").reply()
+    refused = Asker(desk, order_of_many_names()).reply()
     assert refused is not None
     assert not refused.accepted
     assert refused.reason == "an order has 1024 bytes at most"

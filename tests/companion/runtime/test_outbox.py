@@ -42,8 +42,8 @@ class StalledSession:
         return False
 
     def subscribe(self, key: str, *, sample_bytes_max: int) -> Inbox:
-        del key
-        return Inbox(capacity=8, wake_up=self.wake_up, sample_bytes_max=sample_bytes_max)
+        del key, sample_bytes_max
+        return Inbox(capacity=8, wake_up=self.wake_up)
 
     def watch_alive(self, key: str) -> Alive:
         del key

@@ -113,6 +113,21 @@ def test_samples_are_heard_whatever_is_attached(
     assert (samples[0].key, samples[0].payload) == (KEYS.fix, cdr.encode(FIX))
 
 
+def test_a_sample_that_is_larger_than_it_may_be_is_a_bad_one(endpoint: str, bystander: zenoh.Session) -> None:
+    with node(endpoint) as ours:
+        inbox = ours.subscribe(KEYS.fix, sample_bytes_max=len(cdr.encode(FIX)) - 1)
+        samples: list[Sample] = []
+
+        def has_come() -> bool:
+            bystander.put(FIX_KEY, cdr.encode(FIX))
+            samples.extend(inbox.take())
+            return bool(samples)
+
+        until(ours, has_come)
+    with pytest.raises(PayloadError):
+        cdr.decode(Fix, samples[0].payload)
+
+
 def test_humble_has_no_hashes(endpoint: str, bystander: zenoh.Session, tmp_path: Path) -> None:
     map_file = tmp_path / "map.toml"
     map_file.write_text('distribution = "humble"\n', encoding="utf-8")

@@ -36,15 +36,6 @@ def test_full_inbox_drops_the_oldest_and_counts(wake_up: WakeUp) -> None:
     assert inbox.dropped == 3
 
 
-def test_a_sample_larger_than_one_may_be_is_dropped_and_the_others_stay(wake_up: WakeUp) -> None:
-    inbox = Inbox(capacity=4, wake_up=wake_up, sample_bytes_max=8)
-    large = Sample("fix", b"x" * 9, 0)
-    for one in (sample(0), large, sample(1)):
-        inbox.put(one)
-    assert inbox.take() == [sample(0), sample(1)]
-    assert inbox.dropped == 1
-
-
 def test_wait_ends_early_when_another_thread_puts_a_sample(wake_up: WakeUp) -> None:
     inbox = Inbox(capacity=2, wake_up=wake_up)
     thread = threading.Thread(target=inbox.put, args=(sample(7),))

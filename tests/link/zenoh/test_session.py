@@ -93,6 +93,24 @@ def test_samples_arrive_complete_and_in_order(pair: tuple[ZenohSession, ZenohSes
     assert inbox.dropped == 0
 
 
+def test_a_sample_that_is_larger_than_it_may_be_comes_as_an_empty_one(
+    pair: tuple[ZenohSession, ZenohSession],
+) -> None:
+    sender, receiver = pair
+    inbox = receiver.subscribe("ns/vehicle/*", sample_bytes_max=8)
+    first_samples(sender, receiver, inbox, "ns/vehicle/fix")
+    for size in (9, 8):
+        sender.publish("ns/vehicle/fix", b"x" * size, "application/cdr;sensor_msgs/msg/NavSatFix")
+    received: list[bytes] = []
+
+    def both_have_come() -> bool:
+        received.extend(sample.payload for sample in inbox.take() if sample.payload != b"probe")
+        return len(received) >= 2
+
+    until(receiver, both_have_come)
+    assert received == [b"", b"x" * 8]
+
+
 def test_sample_knows_its_key_and_when_it_came(endpoint: str) -> None:
     with (
         listener(endpoint) as sender,
