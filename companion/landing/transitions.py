@@ -14,6 +14,7 @@ from companion.landing.decisions.waiting import update_wait
 from companion.landing.flying import model_at
 from companion.landing.sortie.events import SORTIE_CONDITIONS, decide_sortie, stay_out, update_sortie
 from companion.landing.sortie.phases import begin_phase_of_sortie, clear_of_vehicle, take_order
+from companion.landing.sortie.riding import is_carried_by_deck
 from companion.landing.sortie.way_home import way_home_due
 from companion.landing.state.memory import NOTHING_HELD, ControlMemory, ModelMemory, Progress, StepMemory
 from companion.landing.state.step_data import StepInputs
@@ -62,6 +63,9 @@ def take_events(
             stays = memory.progress.phase is Phase.HOLD and not may_retry
             cause = _COMMANDED[inputs.command] if stays else memory.progress.cause
             memory = replace(memory, progress=replace(memory.progress, may_retry=may_retry, cause=cause))
+    if inputs.leaving and is_carried_by_deck(memory.progress.phase, situation, config):
+        # An autopilot that hovers by itself would hold its place in the world against the deck that drives on.
+        memory = _enter(memory, Event.CALLED_OFF, _COMMANDED[Command.ABORT], situation, config)
     progress = update_wait(memory, situation, config)
     held = update_held(progress.held, progress.phase, situation, config, others=_BESIDE_LANDINGS)
     known = same_or_new(progress.obstacle, obstacle(held, situation, config))

@@ -3,8 +3,10 @@
 import pytest
 
 from companion.situation.phases import Phase
-from tests.companion.world import DISARM, FLYING, SET_MODE, UTC_AHEAD_NS, Flight, reached
+from link.messages import Command
+from tests.companion.world import DISARM, FLYING, SET_MODE, UTC_AHEAD_NS, Flight, on_deck, reached
 
+ON_VEHICLE = frozenset({Phase.TOUCHDOWN, Phase.ON_DECK})
 LOITER = 4.0, 3.0  # PX4's main and sub mode, the second and third parameter of the command
 
 
@@ -13,7 +15,7 @@ def _modes(flight: Flight) -> int:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("phase", [phase for phase in FLYING if phase is not Phase.TOUCHDOWN])
+@pytest.mark.parametrize("phase", [phase for phase in FLYING if phase not in ON_VEHICLE])
 def test_companion_that_ends_in_the_air_lets_the_autopilot_hover(phase: Phase) -> None:
     flight = reached(phase)
     flight.leaving, modes = True, _modes(flight)
@@ -39,3 +41,22 @@ def test_companion_that_ends_on_the_pad_does_not_wait_for_a_disarm_that_never_co
         flight.step()
         assert flight.monotonic_ns - begun_ns < 1.2e9
     assert flight.view.armed
+
+
+def armed_on_deck() -> Flight:
+    """A drone whose motors turn while it still stands on the deck."""
+    flight = on_deck()
+    flight.refuses_plain_disarm = False
+    flight.step(Command.LAUNCH)
+    while not flight.view.armed:
+        flight.step()
+    return flight
+
+
+def test_companion_that_ends_while_the_drone_stands_on_the_deck_switches_the_motors_off() -> None:
+    flight = armed_on_deck()
+    assert flight.history[-1] is Phase.ON_DECK
+    flight.leaving, modes = True, _modes(flight)
+    flight.run(0.6)
+    assert not flight.view.armed
+    assert _modes(flight) == modes
