@@ -4,6 +4,7 @@ The wire loop, the lockstep campaigns and the tests all run this one.
 """
 
 from companion.autopilots.link import AutopilotLink
+from companion.autopilots.messages import is_arming
 from companion.component.component import MavlinkComponent
 from companion.component.identity import ComputerLoad
 from companion.config.companion import CompanionConfig
@@ -148,10 +149,11 @@ class CompanionNode:
 
     @property
     def flies(self) -> bool:
-        """Whether motors turn at this companion's command."""
+        """Whether motors turn at this companion's command, or may."""
         view = self.autopilot.state.view
         steers = not self._dry_run and self.phase in FLYING_PHASES
-        return steers and view.link_up and view.armed and view.in_control
+        may_turn = view.armed or is_arming(self.memory.control.driver, self._clock.monotonic_ns)
+        return steers and view.link_up and may_turn and view.in_control
 
     def poll(self, local_ns: int) -> bool:
         """Do what is due; return whether a step was made."""

@@ -3,6 +3,7 @@
 import time
 from collections.abc import Callable
 
+from companion.autopilots.messages import is_arming
 from companion.runtime.node import CompanionNode
 from companion.situation.phases import Phase
 from link.errors import UserError
@@ -80,10 +81,17 @@ def hand_over(node: CompanionNode, turn: Callable[[], None], log: Log) -> None:
     node.leave()
     if not _is_released(node, turn):
         log.warning("handed over without an answer: the autopilot acts by its parameter", name=driver.timeout_parameter)
-    elif node.autopilot.state.view.armed:
+    elif may_turn(node):
         log.warning("handed over: the autopilot flies the drone", mode=driver.hover_mode)
     else:
         log.info("the motors are off")
+
+
+def may_turn(node: CompanionNode) -> bool:
+    """Return whether motors turn, or were asked for so lately that nothing may have told of it yet."""
+    made = node.inputs
+    is_told = node.autopilot.state.view.armed
+    return is_told or (made is not None and is_arming(node.memory.control.driver, made.monotonic_ns))
 
 
 def _is_released(node: CompanionNode, turn: Callable[[], None]) -> bool:

@@ -1,12 +1,13 @@
-"""An abort or a hold that comes while the order to arm is under way: no motors turn that nobody flies."""
+"""An abort, a hold or the program's end while the order to arm is under way: no motors turn that nobody flies."""
 
 import pytest
 
 from companion.core.reasons import Reason
+from companion.runtime.start_and_handover import may_turn
 from companion.situation.phases import Phase
 from link.mavlink.dialect import mavlink
 from link.messages import Command
-from tests.companion.peer import Setup
+from tests.companion.peer import OFFBOARD, Setup
 from tests.companion.runtime.setups import ready
 
 ARM = mavlink.MAV_CMD_COMPONENT_ARM_DISARM
@@ -70,3 +71,13 @@ def test_motors_that_a_person_stops_before_a_heartbeat_told_of_them_stay_off(aft
     assert setup.node.phase is Phase.PILOT
     assert setup.node.outputs is not None
     assert setup.node.outputs.status.reason_code == Reason.DISARMED.name
+
+
+def test_drone_that_arms_as_the_companion_ends_is_handed_over_and_not_said_to_be_off() -> None:
+    setup = started({})
+    assert setup.autopilot.armed
+    assert setup.node.flies
+    setup.node.leave()
+    setup.run(0.2)
+    assert setup.autopilot.custom_mode != OFFBOARD
+    assert may_turn(setup.node)
