@@ -19,7 +19,7 @@ from link.errors import UserError
 from link.program.clock import Clock, MonotonicNs
 from link.units import NS_PER_S
 
-_JOIN_S = 1.0  # a driver that hangs holds its thread for ever; it is left behind
+_JOIN_S = 1.0  # without a frame the library waits for ever; the thread is left behind
 
 
 class PiRequest(Protocol):
@@ -42,7 +42,7 @@ class PiCamera(Protocol):
         """Wait for a frame."""
 
     def close(self) -> None:
-        """Let the camera go."""
+        """Let the camera go; one that is let go stays so."""
 
 
 class PiCameraSource:
@@ -82,8 +82,9 @@ class PiCameraSource:
         self._start()
 
     def _start(self) -> None:
+        self._camera = self._open_camera()
         self._stopping = threading.Event()
-        self._thread = threading.Thread(target=self._read, args=(self._open_camera(), self._stopping), daemon=True)
+        self._thread = threading.Thread(target=self._read, args=(self._camera, self._stopping), daemon=True)
         self._thread.start()
 
     def _read(self, camera: PiCamera, stopping: threading.Event) -> None:
@@ -126,9 +127,20 @@ class PiCameraSource:
         self._start()
 
     def close(self) -> None:
-        """Let the camera go."""
+        """Let the camera go, also from a thread that waits in vain for a frame: else nobody could open it again.
+
+        Raises:
+            UserError: such a camera cannot be let go.
+        """
         self._stopping.set()
         self._thread.join(_JOIN_S)
+        if not self._thread.is_alive():
+            return
+        try:
+            self._camera.close()
+        except RuntimeError as error:
+            why = " ".join(str(error).split())[:120]
+            raise UserError(f"--source picamera hangs and cannot be let go ({why}): start pad-detector again") from None
 
 
 def open_picamera(size_px: tuple[int, int]) -> PiCamera:

@@ -64,6 +64,40 @@ def test_a_picture_has_the_time_of_its_middle_rows_exposure_and_its_luma() -> No
     assert camera.closed.wait(5.0)
 
 
+class Stuck(Camera):
+    """Gives no frame at all, as after libcamera's "frontend has timed out"."""
+
+    def capture_request(self) -> PiRequest:
+        self.closed.wait()
+        return Request()
+
+
+def test_camera_that_gives_no_more_frames_is_let_go_and_opened_again() -> None:
+    cameras: list[Camera] = []
+
+    def open_camera() -> Camera:
+        if cameras and not cameras[-1].closed.is_set():
+            raise UserError("device or resource busy")
+        cameras.append(Camera() if cameras else Stuck())
+        return cameras[-1]
+
+    source = PiCameraSource(open_camera, Clock(), size_px=SIZE_PX, readout_s=0.0, monotonic_ns=lambda: NOW_NS)
+    source.restart()
+    captured = source.take(5.0)
+    source.close()
+    assert captured is not None
+
+
+def test_camera_that_hangs_and_cannot_be_let_go_is_told() -> None:
+    class Held(Stuck):
+        def close(self) -> None:
+            raise RuntimeError("Closing failed")
+
+    source = PiCameraSource(Held, Clock(), size_px=SIZE_PX, readout_s=0.0, monotonic_ns=lambda: NOW_NS)
+    with pytest.raises(UserError, match="Closing failed"):
+        source.restart()
+
+
 def test_without_picamera2_it_is_said_how_to_install_it() -> None:
     options = SourceOptions(size_px=SIZE_PX, latency_s=0.0, rate_hz=30.0)
     with pytest.raises(UserError, match="python3-picamera2"):
