@@ -89,7 +89,7 @@ def _consistency(result: Mapping[str, Any]) -> list[Row]:
         low, high = mean_band(NEES_DOF)
         of = "squared error over its covariance, position and velocity"
         rows.append(("NEES", banded(result["nees_mean"], _times(low), _times(high)), f"{of}; {NEES_DOF} expected"))
-    if result.get("nis_dof"):
+    if result.get("nis_dof") and result.get("nis_sum") is not None:
         low, high = mean_band(result["nis_dof"])
         mean = result["nis_sum"] / result["nis_dof"]
         of = "squared innovations over their covariance, per degree of freedom"

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel, FiniteFloat, ValidationError
+from pydantic import BaseModel, ConfigDict, FiniteFloat, NonNegativeInt, ValidationError
 
 from companion.config.companion import CompanionConfig
 from companion.recording.folder import STEM as COMPANION
@@ -131,15 +131,40 @@ def read_result(path: Path) -> dict[str, Any]:
     return table
 
 
-class _Result(BaseModel):
+class _Shown(BaseModel):
     """What is shown of a result by name; the rest is shown as it is."""
 
+    model_config = ConfigDict(strict=True)
+
+
+class _Anew(_Shown):
+    at_s: FiniteFloat
+    phase: str
+    lowest_m: FiniteFloat | None
+    reason_code: str
+    reason: str
+
+
+class _Approach(_Shown):
+    from_s: FiniteFloat
+    to_s: FiniteFloat
+    ended: str | None
+    lowest_m: FiniteFloat | None
+    reason_code: str
+    reason: str
+    begun_anew: list[_Anew]
+
+
+class _Result(_Shown):
     scenario: str
     seed: int | str
     tier: str
     reason: str
     contact_s: FiniteFloat | None = None
-    approaches: list[dict[str, Any]] = []
+    approaches: list[_Approach] = []
+    nees_mean: FiniteFloat | None = None
+    nis_sum: FiniteFloat | None = None
+    nis_dof: NonNegativeInt | None = None
 
 
 def _attached(head: RecordingHead, name: str) -> dict[str, Any]:

@@ -64,6 +64,6 @@ def is_during(run: RunData, phase: str) -> Flags:
 
 
 def contact_index(run: RunData) -> int | None:
-    """Return the sample of the first contact, None without one."""
+    """Return the sample of the first contact, None without one, or where the recording was broken off before it."""
     contact_s = run.result.get("contact_s")
-    return None if contact_s is None else int(np.searchsorted(run.t_s, contact_s))
+    return None if contact_s is None or contact_s > run.t_s[-1] else int(np.searchsorted(run.t_s, contact_s))
