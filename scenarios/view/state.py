@@ -23,7 +23,7 @@ from link.payloads.checks import PayloadError
 from link.payloads.decklander_msgs import PACKAGE, fields_of
 from link.records import replace
 from link.zenoh.keys import Keys
-from scenarios.view.fields import Array, number, rows, stamp_ns, vector
+from scenarios.view.fields import Array, finite, number, rows, stamp_ns, vector
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -167,12 +167,11 @@ def _plan_over(status: LandingStatus) -> dict[str, Any]:
 
 def _estimate(payload: bytes) -> dict[str, Any]:
     fields = fields_of(payload, f"{PACKAGE}/VehicleEstimate")
-    yaw = fields["yaw_rad"]
     estimate = Estimate(
         t_ns=stamp_ns(fields),
-        position_enu_m=fields["position_m"],
-        velocity_enu_m_s=fields["velocity_m_s"],
-        yaw_rad=float(yaw[0]) if len(yaw) else None,
+        position_enu_m=finite(fields["position_m"]),
+        velocity_enu_m_s=finite(fields["velocity_m_s"]),
+        yaw_rad=number(fields["yaw_rad"]),
     )
     return {"estimate": estimate}
 

@@ -2,7 +2,6 @@
 
 import math
 from html import escape
-from typing import Any
 
 import numpy as np
 import pytest
@@ -13,7 +12,7 @@ from link.frames.rotations import quaternion_from_roll_pitch_yaw, rotate
 from link.messages import BodyTruth, LandingStatus, PadGeometry, Vector3
 from link.payloads import json_messages
 from link.payloads.checks import PayloadError
-from link.payloads.decklander_msgs import floats, ids_array, ros_message
+from link.payloads.decklander_msgs import floats, ros_message
 from link.records import replace
 from link.zenoh.keys import Keys
 from scenarios.app import app
@@ -128,44 +127,6 @@ def test_bytes_that_are_no_message_are_refused_and_change_nothing(topic: str) ->
     with pytest.raises(PayloadError):
         StateReader(KEYS).taken(state, topic, b"\x00\x01\x00\x00\xff")
     assert state.pad == PAD
-
-
-FORECAST = {
-    name: floats([0.0] * 6) for name in ("position_m", "velocity_m_s", "acceleration_m_s2", "position_std_m")
-} | {"offset_s": floats([0.0, 1.0]), "yaw_rad": floats(None)}
-TRAJECTORY = {name: FORECAST[name] for name in ("offset_s", "position_m", "velocity_m_s", "acceleration_m_s2")}
-STEP: dict[str, Any] = {
-    **dict.fromkeys(("phase", "reason", "text", "plan_status"), ""),
-    **dict.fromkeys(("measurements", "plan_limit_excess", "plan_iterations"), 0),
-    **dict.fromkeys(("relative_position_m", "relative_velocity_m_s"), floats([1.0, 2.0, 3.0])),
-    **dict.fromkeys(("height_above_pad_m", "time_to_contact_s", "fix_age_s", "command_parameters"), floats(None)),
-    **dict.fromkeys(("next_position_m", "next_velocity_m_s", "next_acceleration_m_s2"), floats(None)),
-    "reply": [],
-    "armed": False,
-    "commands": ids_array([]),
-}
-
-
-@pytest.mark.parametrize(
-    ("topic", "name", "fields", "wrong", "count"),
-    [
-        ("forecast", "Forecast", FORECAST, "position_m", 4),
-        ("forecast", "Forecast", FORECAST, "position_m", 9),
-        ("forecast", "Forecast", FORECAST, "position_std_m", 5),
-        ("plan", "Trajectory", TRAJECTORY, "position_m", 4),
-        ("step", "Step", STEP, "relative_position_m", 1),
-    ],
-)
-def test_message_whose_vectors_are_not_whole_is_refused(
-    topic: str, name: str, fields: dict[str, Any], wrong: str, count: int
-) -> None:
-    right, bad = (
-        ros_message(KEYS.record(topic), name, 1, **{**fields, wrong: values})
-        for values in (fields[wrong], floats([0.0] * count))
-    )
-    state = StateReader(KEYS).taken(ViewState(), right.topic, right.payload)
-    with pytest.raises(PayloadError, match=r"numbers are no|standard deviations"):
-        StateReader(KEYS).taken(state, bad.topic, bad.payload)
 
 
 def test_plan_is_forgotten_when_the_motors_are_off() -> None:
