@@ -13,7 +13,8 @@ from scenarios.view.state import ViewState
 Array = NDArray[np.float64]
 _UNKNOWN = math.nan  # of the plots only: a gap in a line
 _NOWHERE = (_UNKNOWN, _UNKNOWN, _UNKNOWN)
-_POINTS_MAX = 36_000  # half an hour at 20 Hz; then the older half goes
+ROWS_MAX = 36_000
+"""Of what goes on: half an hour at 20 Hz."""
 NAMES = ("height_m", "distance_m", "relative_speed_m_s", "drone_speed_m_s", "vehicle_speed_m_s", "error_m")
 
 
@@ -22,6 +23,7 @@ class History:
     """Rows in the order of time.
 
     Attributes:
+        rows_max: when there are more, the older half goes; None keeps all.
         start_ns: of the first row.
         times_s: since then.
         drone: its positions in W; not a number where unknown, as in the other columns.
@@ -29,6 +31,7 @@ class History:
         values: one of `NAMES` each.
     """
 
+    rows_max: int | None = None
     start_ns: int | None = None
     times_s: list[float] = field(default_factory=list)
     drone: list[Vector3] = field(default_factory=list)
@@ -44,9 +47,9 @@ class History:
             self.clear()
         if self.start_ns is None:
             self.start_ns, t_s = state.t_ns, 0.0
-        if len(self.times_s) >= _POINTS_MAX:
+        if self.rows_max is not None and len(self.times_s) >= self.rows_max:
             for column in (self.times_s, self.drone, self.pad, self.values):
-                del column[: _POINTS_MAX // 2]
+                del column[: self.rows_max // 2]
         self.times_s.append(t_s)
         self.drone.append(_NOWHERE if state.drone is None else state.drone.position_enu_m)
         self.pad.append(_pad(state))

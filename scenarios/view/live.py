@@ -6,7 +6,7 @@ from link.payloads.checks import PayloadError
 from link.zenoh.inbox import Inbox
 from link.zenoh.keys import Keys
 from link.zenoh.session import ZenohSession
-from scenarios.view.history import History
+from scenarios.view.history import ROWS_MAX, History
 from scenarios.view.state import StateReader, ViewState
 
 _ANSWER_S = 3.0
@@ -28,7 +28,7 @@ class LiveSource:
 
     def __init__(self, zenoh: ZenohSession, keys: Keys) -> None:
         self.state = ViewState()
-        self.history = History()
+        self.history = History(rows_max=ROWS_MAX)
         self.bad_payloads = 0
         self._zenoh = zenoh
         self._keys = keys

@@ -57,18 +57,23 @@ class RecordedSource:
         keys = Keys(names.get("namespace", "decklander"), names.get("vehicle", "vehicle"), names.get("drone", "drone"))
         self.road = _road(truth)
         self.history = History()
-        self._states: list[ViewState] = []
+        self._states: list[ViewState] = []  # one for each row
         for state in _states(_merge(companion, truth, eyes), keys, self._pad()):
-            rows = len(self.history.times_s)
-            self.history.add(state)
-            if len(self.history.times_s) > rows:
-                self._states.append(state)
+            self._add(state)
         if not self._states:
             raise UserError(f"{path}: the recording holds no motion of a drone")
         self.position_s = 0.0
         self.playing = False
         self.rate = 1.0
         self._last_s: float | None = None
+
+    def _add(self, state: ViewState) -> None:
+        before = self.history.start_ns, len(self.history.times_s)
+        self.history.add(state)
+        if self.history.start_ns != before[0]:
+            self._states.clear()
+        if (self.history.start_ns, len(self.history.times_s)) != before:
+            self._states.append(state)
 
     @property
     def duration_s(self) -> float:
