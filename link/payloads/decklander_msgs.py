@@ -20,6 +20,7 @@ from link.payloads.ros_fields import WORLD_FRAME, to_header
 
 PACKAGE = "decklander_msgs/msg"
 _HEADER = "std_msgs/Header header\n"
+_NAME_SHOWN = 60  # characters of what is no message's name
 
 DEFINITIONS: dict[str, str] = {
     "NodeInput": "uint64 sequence\nuint8 kind\nint64 local_ns\nstring key\nuint8[] data\n",
@@ -103,8 +104,10 @@ def fields_of(payload: bytes, type_name: str) -> dict[str, Any]:
     """Return the fields of a message by their paths, such as `header.stamp.sec`: numbers, texts and flat arrays.
 
     Raises:
-        PayloadError: the bytes are no such message.
+        PayloadError: the bytes are no such message, or there is none of that name.
     """
+    if type_name not in typestore().types:
+        raise PayloadError(f"{type_name[:_NAME_SHOWN]!r} is no message that is known here")
     found: dict[str, Any] = {}
     try:
         message = typestore().deserialize_cdr(payload, type_name)

@@ -17,6 +17,7 @@ from companion.runtime.node import CompanionNode
 from link.errors import UserError
 from link.messages import Order, PadGeometry
 from link.payloads import json_messages
+from link.payloads.checks import PayloadError
 from link.payloads.decklander_msgs import RosMessage, fields_of
 from link.program.toml_config import parse_toml, validate
 from link.recording.mcap_reader import RecordingHead, read_head, read_messages, recordings
@@ -116,12 +117,18 @@ def replay(flight: Flight, config: CompanionConfig | None = None) -> Replay:
     Args:
         flight: as recorded.
         config: in place of the recorded one.
+
+    Raises:
+        UserError: a recorded output is none.
     """
     flown = outputs_of(flight, flight.config if config is None else config)
     comparison = Comparison()
     for name in OUTPUTS:
         topic = flight.keys.record(name)
-        comparison.compare(name, flight.outputs.get(topic, []), flown.get(topic, []))
+        try:
+            comparison.compare(name, flight.outputs.get(topic, []), flown.get(topic, []))
+        except PayloadError as error:
+            raise UserError(f"{flight.head.path}: is damaged ({error}); it cannot be compared") from None
     sequences = [record.sequence for record in flight.inputs]
     expected = sequences[-1] + 1 if sequences else 0
     return Replay(
@@ -181,15 +188,36 @@ def give(node: CompanionNode, record: InputRecord) -> None:
 def _input(message: RosMessage, path: Path) -> InputRecord:
     try:
         fields = fields_of(message.payload, message.type_name)
-        return InputRecord(
+        record = InputRecord(
             sequence=int(fields["sequence"]),
             kind=InputKind(fields["kind"]),
             local_ns=int(fields["local_ns"]),
             key=fields["key"],
             data=bytes(fields["data"]),
         )
+        _check(record)
     except (KeyError, TypeError, ValueError) as error:
         raise UserError(f"{path}: holds an input that is none ({error}); it cannot be replayed") from error
+    return record
+
+
+def _check(record: InputRecord) -> None:
+    """Check what a node takes as it is: all else goes through a door that strangers knock at, too.
+
+    Raises:
+        ValueError: no companion has written this.
+    """
+    match record.kind:
+        case InputKind.PAD:
+            json_messages.decode(PadGeometry, record.data)
+        case InputKind.ALIVE if not record.data:
+            raise ValueError("whether the vehicle is there is not said")
+        case InputKind.RIVAL:
+            record.data[:-1].decode()
+        case InputKind.COMMAND:
+            json_messages.decode(Order, record.data)
+        case _:
+            pass
 
 
 def text_lines(results: Iterable[tuple[str, Replay]], shown: int = 20) -> list[str]:
