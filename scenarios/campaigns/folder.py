@@ -21,6 +21,7 @@ from scenarios.campaigns.landings_file import as_written, read_rows, write_rows
 from scenarios.campaigns.plan import Plan
 from scenarios.recordings.result import write_json
 
+_SHOWN = 60  # characters of what a line says
 _PLAN, _JOURNAL, _LANDINGS, _TIMING = "campaign.json", "landings.jsonl", "landings.parquet", "timing.parquet"
 
 
@@ -65,16 +66,25 @@ def read_landings(folder: Path) -> list[Row]:
     """
     plan = read_plan(folder)
     if (folder / _LANDINGS).exists() and not (folder / _JOURNAL).exists():
-        return [_with_firmware(row, plan) for row in read_rows(folder / _LANDINGS)]
-    rows = [_with_firmware(flown.row, plan) for flown in _list_newest(folder)]
+        return [_with_firmware(row, plan, folder / _LANDINGS) for row in read_rows(folder / _LANDINGS)]
+    rows = [_with_firmware(flown.row, plan, folder / _JOURNAL) for flown in _list_newest(folder)]
     if not rows:
         raise UserError(f"{folder}: no landing is done; go on with: scenarios campaign --resume {folder}")
-    return as_written(rows)
+    return as_written(rows, folder / _JOURNAL)
 
 
-def _with_firmware(row: Row, plan: Plan) -> Row:
-    """Return a row that names its firmware, as those of earlier versions do not."""
-    return {"firmware": plan.flown[row["cell"]].firmware} | row
+def _with_firmware(row: Row, plan: Plan, path: Path) -> Row:
+    """Return a row that names its firmware, as those of earlier versions do not.
+
+    Raises:
+        UserError: it is of no cell of the campaign.
+    """
+    cell = str(row.get("cell"))
+    if cell not in plan.flown:
+        raise UserError(
+            f"{path}: has a landing of {cell[:_SHOWN]!r}, which is not in {_PLAN}; is it another campaign's?"
+        )
+    return {"firmware": plan.flown[cell].firmware} | row
 
 
 def read_timing(folder: Path) -> list[Row]:
@@ -85,7 +95,7 @@ def read_timing(folder: Path) -> list[Row]:
     """
     if not (folder / _JOURNAL).exists():
         return read_rows(folder / _TIMING)
-    return as_written([_timing(flown) for flown in _list_newest(folder)])
+    return as_written([_timing(flown) for flown in _list_newest(folder)], folder / _JOURNAL)
 
 
 def missing_landings(folder: Path) -> str | None:
@@ -137,11 +147,21 @@ class Journal:
         return dict(self._done)
 
     def add(self, flown: Flown) -> None:
-        """Write a landing down."""
-        os.write(
-            self._descriptor,
-            (json.dumps({"wall_s": flown.wall_s, "times": dict(flown.times)} | flown.row) + "\n").encode(),
-        )
+        """Write a landing down.
+
+        Raises:
+            UserError: the disk is full, or takes nothing else either.
+        """
+        line = json.dumps({"wall_s": flown.wall_s, "times": dict(flown.times)} | flown.row) + "\n"
+        left = memoryview(line.encode())
+        try:
+            while left:
+                left = left[os.write(self._descriptor, left) :]
+        except OSError as error:
+            raise UserError(
+                f"{self._folder}: cannot be written ({error.strerror}); make room, and go on with: "
+                f"scenarios campaign --resume {self._folder}"
+            ) from None
         self._done[_task_of(flown.row)] = flown
 
     def write_results(self) -> None:
@@ -184,14 +204,27 @@ def _read_journal(path: Path, descriptor: int) -> dict[Task, Flown]:
 
 
 def _lines(path: Path, data: bytes) -> list[Flown]:
-    try:
-        lines = [json.loads(line) for line in data.splitlines()]
-        found = [Flown(wall_s=line.pop("wall_s"), times=line.pop("times", {}), row=line) for line in lines]
-        for one in found:
-            _task_of(one.row)
-    except (ValueError, RecursionError, AttributeError, KeyError, TypeError) as error:
-        raise UserError(f"{path}: a line of it is no landing ({error!r}); start again in another folder") from None
+    found: list[Flown] = []
+    for number, line in enumerate(data.splitlines(), 1):
+        try:
+            found.append(_flown_of(json.loads(line)))
+        except (ValueError, RecursionError, AttributeError, KeyError, TypeError):
+            raise UserError(f"{path}: line {number} is no landing; delete it, and go on with --resume") from None
     return found
+
+
+def _flown_of(table: Any) -> Flown:
+    """Return a landing as its line has it.
+
+    Raises:
+        AttributeError, KeyError, TypeError: it is none.
+    """
+    flown = Flown(wall_s=float(table.pop("wall_s")), times=dict(table.pop("times", {})), row=table)
+    task, times, error = _task_of(table), flown.times.values(), table["error"]
+    kinds = (isinstance(task.cell, str), type(task.seed) is int, error is None or isinstance(error, str))
+    if not all(kinds) or not all(isinstance(one, int | float) for one in times):
+        raise TypeError
+    return flown
 
 
 def _timing(flown: Flown) -> Row:

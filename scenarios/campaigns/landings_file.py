@@ -48,13 +48,21 @@ def write_rows(path: Path, rows: Sequence[Row], versions: Mapping[str, str]) -> 
         path: of the file.
         rows: any number of them.
         versions: of what decided them, by name.
+
+    Raises:
+        UserError: the disk is full, or takes nothing else either; or the rows do not fit each other.
     """
-    frame = _frame(rows)
+    frame = _frame(rows, path)
     unfinished = path.with_suffix(".unfinished")
     about = {"decklander.units": units_of(frame.columns), "decklander.versions": versions}
     metadata = {name: json.dumps(value) for name, value in about.items()}
-    frame.write_parquet(unfinished, compression="zstd", statistics=False, metadata=metadata)
-    unfinished.replace(path)
+    try:
+        frame.write_parquet(unfinished, compression="zstd", statistics=False, metadata=metadata)
+        unfinished.replace(path)
+    except (OSError, pl.exceptions.PolarsError) as error:
+        unfinished.unlink(missing_ok=True)
+        why = str(error).splitlines()[0]
+        raise UserError(f"{path}: cannot be written ({why}); make room, and go on with --resume") from None
 
 
 def read_rows(path: Path) -> list[Row]:
@@ -69,16 +77,24 @@ def read_rows(path: Path) -> list[Row]:
         raise UserError(f"{path}: cannot be read ({str(error).splitlines()[0]})") from None
 
 
-def as_written(rows: Sequence[Row]) -> list[Row]:
-    """Return rows as they would be read back from a file that they were written into."""
-    return _frame(rows).to_dicts()
+def as_written(rows: Sequence[Row], source: Path) -> list[Row]:
+    """Return rows as they would be read back from a file that they were written into.
+
+    Raises:
+        UserError: the rows, which are from `source`, do not fit each other.
+    """
+    return _frame(rows, source).to_dicts()
 
 
-def _frame(rows: Sequence[Row]) -> pl.DataFrame:
+def _frame(rows: Sequence[Row], path: Path) -> pl.DataFrame:
     ordered = sorted(rows, key=lambda row: (row["cell"], row["seed"]))
     names = sorted({name for row in rows for name in row})
     columns = [*(name for name in _FIRST if name in names), *(name for name in names if name not in _FIRST)]
-    return pl.DataFrame({name: _column(name, ordered) for name in columns})
+    try:
+        return pl.DataFrame({name: _column(name, ordered) for name in columns})
+    except (TypeError, OverflowError, pl.exceptions.PolarsError) as error:
+        why = str(error).splitlines()[0]
+        raise UserError(f"{path}: landings that do not fit each other ({why}); start again in another folder") from None
 
 
 def _column(name: str, rows: Sequence[Row]) -> pl.Series:
