@@ -38,8 +38,9 @@ class ChaseConfig(StrictModel):
     unseen_height_max_m: FlownHeight = 8.0  # in all; less than the range of the detector that is to see it (12 m here)
     # Of the acceleration limit, and of the jerk's, that suffices for a chase that begins in time.
     start_fraction: Annotated[float, Field(gt=0.0, le=1.0)] = 0.7
-    # So long a chase looks for a pad that has to be seen, over its said place, before it says what is missing. In this
-    # time the offset does not change, and dropouts of a detector last a second.
+    # So long a chase looks for a pad that has to be seen, over its said place, before it says what is missing; and for
+    # that of a vehicle that tells nothing, anywhere. In this time the offset does not change, and dropouts of a
+    # detector last a second.
     unseen_hold_s: Positive = 10.0
     passing_distance_m: Positive = 15.0  # a vehicle that passes farther away than this is not chased
     # One that has passed meanwhile is chased while so much more speed makes its lead up in that time.

@@ -45,8 +45,14 @@ def must_be_seen(s: Situation, c: CompanionConfig) -> bool:
     return s.pad is not None and is_unseen(s.pad, c)
 
 
-def _is_over_unseen_pad(s: Situation, c: CompanionConfig) -> bool:
-    """Return whether the drone has to see the pad, and is where a camera would that sees 45 degrees to each side."""
+def _looks_in_vain(s: Situation, c: CompanionConfig) -> bool:
+    """Return whether the drone has to see the pad, and is where a camera would that sees 45 degrees to each side.
+
+    Where a vehicle is that tells nothing and is out of sight, nobody knows soon: what is expected of it may run away,
+    and the drone would follow.
+    """
+    if c.silent_vehicle is not None and is_fix_old(s, c):
+        return True
     if s.approach is None or c.guidance.style is LandingStyle.DIRECT:
         return False
     return must_be_seen(s, c) and s.approach.distance_m < c.chase.height_m
@@ -174,7 +180,7 @@ ABORTS = (
     Condition(
         reason=Reason.OFFSET_UNKNOWN,
         phases=frozenset({Phase.CHASE}),
-        is_true=_is_over_unseen_pad,
+        is_true=_looks_in_vain,
         hold_s=lambda _, c: c.chase.unseen_hold_s,
         cause=lambda _, c: tell_unseen(c),
     ),

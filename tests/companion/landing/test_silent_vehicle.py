@@ -20,9 +20,11 @@ SILENT = CONFIG.model_copy(update={"silent_vehicle": SilentVehicleConfig()})
 HIGHEST_M = CONFIG.chase.unseen_height_max_m
 
 
-def decision_within(phase: Phase, std_m: float, limit_s: float, config: CompanionConfig) -> Decision | None:
-    """The first decision over a pad that was seen 2 s ago, or told of, and is not seen again."""
-    facts = situation(HIGHEST_M, pad=replace(pad_at(std_m=std_m), is_coarse=True))
+def decision_within(
+    phase: Phase, std_m: float, limit_s: float, config: CompanionConfig, *, away_m: float = 0.0
+) -> Decision | None:
+    """The first decision over, or beside, a pad that was seen 2 s ago, or told of, and is not seen again."""
+    facts = situation(HIGHEST_M, away_m, pad=replace(pad_at(std_m=std_m), is_coarse=True))
     facts = changed(facts, vehicle=VehicleNews(fix_age_s=2.0, is_alive=None))
     held: Held = {}
     for tick in range(round(limit_s * 1e9 / TICK_NS) + 1):
@@ -43,6 +45,12 @@ def test_a_chase_goes_on_out_of_sight_where_one_by_telemetry_breaks_off() -> Non
 def test_a_chase_that_looks_for_too_long_says_that_the_pad_is_not_seen() -> None:
     decision = decision_within(Phase.CHASE, 3.0, CONFIG.chase.unseen_hold_s + 1.0, SILENT)
     assert decision == (Event.UNSAFE, Cause(Reason.PAD_NOT_SEEN))
+
+
+def test_a_vehicle_out_of_sight_that_is_believed_far_away_is_not_chased_for_longer() -> None:
+    for std_m in (0.1, 30.0):
+        decision = decision_within(Phase.CHASE, std_m, CONFIG.chase.unseen_hold_s + 1.0, SILENT, away_m=50.0)
+        assert decision == (Event.UNSAFE, Cause(Reason.PAD_NOT_SEEN))
 
 
 @pytest.mark.parametrize("phase", [Phase.ALIGN, Phase.DESCEND])
