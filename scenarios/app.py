@@ -80,6 +80,7 @@ def run_command(
     as_json: JsonOption = False,
 ) -> int:
     """Run a landing and score it on ground truth; exit code 1 when it does not land."""
+    from link.program.settings import SCENARIO, refuse_variables
     from scenarios.catalogue.catalogue import load_changed_scenario
     from scenarios.catalogue.firmware_option import with_firmware
     from scenarios.catalogue.world_names import run_seed
@@ -88,6 +89,7 @@ def run_command(
     from scenarios.recordings.run_folder import RunOptions, run_folder
     from scenarios.wire.run import run_over_wire
 
+    refuse_variables(apart_from=SCENARIO)
     scenario = load_changed_scenario(name if firmware is None else with_firmware(name, firmware), changes)
     if lockstep and speed is not None:
         raise UserError("--lockstep flies as fast as it can: leave out --speed")

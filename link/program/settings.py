@@ -71,6 +71,24 @@ def check_prefixes(environment: Mapping[str, str]) -> None:
             )
 
 
+def refuse_variables(*, apart_from: str | None = None) -> None:
+    """Refuse variables of ours that would change nothing of what is about to be flown.
+
+    Args:
+        apart_from: the prefix of those that do change it, None where none do.
+
+    Raises:
+        UserError: there is one.
+    """
+    check_prefixes(os.environ)
+    names = [name for prefix in PREFIXES if prefix != apart_from for name in variables_of(prefix, os.environ)]
+    if names:
+        raise UserError(
+            f"environment: {', '.join(names)} would change nothing here: unset it, and write what is to change into a "
+            "scenario's file"
+        )
+
+
 def variables_of(prefix: str, environment: Mapping[str, str]) -> list[str]:
     """Return the names of the variables that set something of what `prefix` names, sorted."""
     return sorted(name for name in environment if name.startswith(prefix + _BELOW))

@@ -64,8 +64,10 @@ def _live(
 
 
 def _inside() -> "Iterator[Attempt]":
+    from link.program.settings import refuse_variables
     from scenarios.attack import crafted, spoofs
 
+    refuse_variables()
     yield from spoofs.attempts()
     yield from crafted.attempts()
 

@@ -33,9 +33,11 @@ def bench_command(
     as_json: JsonOption = False,
 ) -> None:
     """Measure step times, speed, memory and start-up against their budgets; takes about a minute."""
+    from link.program.settings import refuse_variables
     from scenarios.catalogue.catalogue import load_scenario
     from scenarios.catalogue.world_names import run_seed
 
+    refuse_variables()
     if against is None and pairs is not None:
         raise UserError(f"--pairs {pairs} counts landings on two checkouts: give --against FOLDER, or leave it out")
     if against is not None:

@@ -80,9 +80,11 @@ def campaign_command(
 ) -> int:
     """Fly each cell with many seeds and print the summary; exit code 1 when a landing raised an error."""
     require("campaign", "scenarios campaign")
+    from link.program.settings import COMPANION, refuse_variables
     from scenarios.campaigns.campaign import Where
     from scenarios.campaigns.plan import make_plan
 
+    refuse_variables(apart_from=COMPANION)
     where = Where(workers=workers, scheduler=scheduler)
     if workers is not None and scheduler is not None:
         raise UserError("--workers is about local processes: leave it out with --scheduler")

@@ -41,10 +41,12 @@ def falsify_command(
 ) -> int:
     """Search a slice for an unsafe landing and reduce it to a small scenario file; exit code 1 when none is found."""
     require("campaign", "scenarios falsify")
+    from link.program.settings import refuse_variables
     from scenarios.commands.falsify_progress import FalsifyProgress
     from scenarios.falsify.falsify import Request, create_folder, falsify
     from scenarios.processes.local_workers import core_count
 
+    refuse_variables()
     request = Request(
         slice=slice_name,
         seed=seed,

@@ -47,6 +47,7 @@ def fly_command(
     The vehicle drives by the place where the simulated drone stands, its pad at the height of the ground. In a sortie
     the drone launches from it; exit code 1 also when it touches anything between lift-off and landing.
     """
+    from link.program.settings import SCENARIO, refuse_variables
     from link.transports.device import parse_device
     from scenarios.catalogue.catalogue import load_changed_scenario
     from scenarios.catalogue.world_names import run_seed
@@ -55,6 +56,7 @@ def fly_command(
     from scenarios.firmware.options import FlyOptions
     from scenarios.recordings.run_folder import run_folder
 
+    refuse_variables(apart_from=SCENARIO)
     for device in (mavlink, watch):
         parse_device(device)  # a mistake is told before there is a folder, and before anybody is waited for
     scenario = load_changed_scenario(name, changes)

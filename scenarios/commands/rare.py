@@ -44,11 +44,13 @@ def rare_command(
 ) -> int:
     """Estimate the probability of an unsafe outcome; exit code 1 when the splitting has not converged."""
     require("campaign", "scenarios rare")
+    from link.program.settings import refuse_variables
     from scenarios.processes.local_workers import core_count
     from scenarios.rare.landing import flying, subject_of
     from scenarios.rare.report import level_line, print_report, report
     from scenarios.rare.splitting import Settings, split
 
+    refuse_variables()
     subject = subject_of(name, firmware)
     settings = Settings(particles=particles, steps=steps, in_time=True, least=level, seed=seed)
     with flying(subject, core_count() if workers is None else workers) as fly:

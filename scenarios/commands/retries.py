@@ -62,10 +62,12 @@ def retries_command(
 ) -> int:
     """Break descents off and see whether the next approach lands; exit code 1 when fewer than 95 % do."""
     require("campaign", "scenarios retries")
+    from link.program.settings import refuse_variables
     from scenarios.catalogue.catalogue import load_scenario
     from scenarios.catalogue.firmware_option import with_firmware
     from scenarios.config import FIRMWARES
 
+    refuse_variables()
     if firmware is not None and firmware not in FIRMWARES:
         raise UserError(f"--firmware is one of {', '.join(FIRMWARES)}, not '{firmware}'")
     firmwares = tuple(one for one in FIRMWARES if firmware in {None, one})

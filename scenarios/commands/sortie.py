@@ -54,12 +54,14 @@ def sortie_command(
     Exit code 1 if one is unsafe, or touches anything between lift-off and landing.
     """
     require("campaign", "scenarios sortie")
+    from link.program.settings import refuse_variables
     from scenarios.catalogue.firmware_option import BOTH
     from scenarios.config import FIRMWARES
     from scenarios.processes.local_workers import LocalWorkers, core_count
     from scenarios.processes.pool import run_tasks
     from scenarios.sortie.task import SortieTask, fly_sortie, lost_sortie, sortie_scenario
 
+    refuse_variables()
     if firmware not in {*FIRMWARES, BOTH}:
         raise UserError(f"--firmware is one of {', '.join((*FIRMWARES, BOTH))}, not '{firmware}'")
     chosen = FIRMWARES if firmware == BOTH else (firmware,)
