@@ -36,9 +36,9 @@ def is_of_first_battery(message: Message) -> bool:
 
 
 def battery_share(message: Message) -> float | None:
-    """Return what a BATTERY_STATUS says is left, 0 to 1, None when it is not told."""
+    """Return what a BATTERY_STATUS says is left, 0 to 1, None when it is not told or no share."""
     percent: int = message.battery_remaining
-    return percent / 100.0 if percent >= 0 else None
+    return percent / 100.0 if 0 <= percent <= 100 else None
 
 
 def looks_down(message: Message) -> bool:
