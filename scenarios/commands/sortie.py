@@ -71,16 +71,26 @@ def sortie_command(
         for one in chosen
     ]
     sortie_scenario(cell, first_seed, chosen[0])
-    with closing(run_tasks(LocalWorkers(fly_sortie, workers or core_count()), tasks, lost=lost_sortie)) as results:
-        found = {flown.task: flown for flown in results}
+    found: dict[SortieTask, FlownSortie] = {}
+    try:
+        with closing(run_tasks(LocalWorkers(fly_sortie, workers or core_count()), tasks, lost=lost_sortie)) as results:
+            found.update((flown.task, flown) for flown in results)
+    except KeyboardInterrupt:
+        sys.stderr.write(f"broken off: {len(found)} of {len(tasks)} sorties are flown\n")
+        _write(cell, [_row(found[task]) for task in tasks if task in found], as_json=as_json)
+        raise
     rows = [_row(found[task]) for task in tasks]
+    _write(cell, rows, as_json=as_json)
+    return 0 if all(row["tier"] != "unsafe" and row["contacts"] == 0 for row in rows) else 1
+
+
+def _write(cell: str, rows: Sequence[dict[str, Any]], *, as_json: bool) -> None:
     if as_json:
         sys.stdout.write(json.dumps({"cell": cell, "sorties": rows, "total": _total(rows)}, indent=2) + "\n")
-    else:
-        sys.stdout.write(_line({name: name for name in (*_WIDTHS, "tier_reason")}))
-        sys.stdout.writelines(_line(row) for row in rows)
-        sys.stdout.write("".join(f"{name}: {value}\n" for name, value in _total(rows).items()))
-    return 0 if all(row["tier"] != "unsafe" and row["contacts"] == 0 for row in rows) else 1
+        return
+    sys.stdout.write(_line({name: name for name in (*_WIDTHS, "tier_reason")}))
+    sys.stdout.writelines(_line(row) for row in rows)
+    sys.stdout.write("".join(f"{name}: {value}\n" for name, value in _total(rows).items()))
 
 
 def _row(flown: "FlownSortie") -> dict[str, Any]:
