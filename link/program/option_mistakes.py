@@ -60,8 +60,8 @@ def _allowed(parameter: Any) -> str:
     if low is None and high is None:
         return kind
     if high is None:
-        return f"{kind}, {low:g} or more"
-    return f"{kind}, {high:g} or less" if low is None else f"{kind} from {low:g} to {high:g}"
+        return f"{kind}, {low:.15g} or more"
+    return f"{kind}, {high:.15g} or less" if low is None else f"{kind} from {low:.15g} to {high:.15g}"
 
 
 def _name(parameter: Any) -> str:

@@ -11,7 +11,7 @@ import typer
 from link.errors import UserError
 from link.program.cli import JsonOption, SetOption
 from link.program.extras import require
-from scenarios.commands.options import WorkersOption
+from scenarios.commands.options import LANDINGS_MAX, WorkersOption
 
 if TYPE_CHECKING:
     from scenarios.campaigns.campaign import Where
@@ -38,7 +38,8 @@ _CellsArgument = Annotated[
     ),
 ]
 _SeedsOption = Annotated[
-    int | None, typer.Option("--seeds", min=1, metavar="N", help="Landings of each cell [default: 100].")
+    int | None,
+    typer.Option("--seeds", min=1, max=LANDINGS_MAX, metavar="N", help="Landings of each cell [default: 100]."),
 ]
 _FirstSeedOption = Annotated[
     int | None, typer.Option("--first-seed", min=0, metavar="N", help="The others follow [default: 1].")

@@ -5,6 +5,9 @@ from typing import Annotated
 
 import typer
 
+LANDINGS_MAX = 1_000_000
+"""Of each kind in one command: worlds have as many seeds, and all are listed before the first is flown."""
+
 WorkersOption = Annotated[
     int | None, typer.Option("--workers", min=1, metavar="N", help="Local processes [default: one a core].")
 ]

@@ -8,7 +8,7 @@ import typer
 
 from link.program.cli import JsonOption
 from link.program.extras import require
-from scenarios.commands.options import WorkersOption
+from scenarios.commands.options import LANDINGS_MAX, WorkersOption
 
 _PARTICLES, _STEPS, _LEVEL = 200, 4, 1e-6
 
@@ -31,7 +31,7 @@ def rare_command(
         float, typer.Option("--level", min=1e-12, max=0.1, help="No level goes below this probability.")
     ] = _LEVEL,
     particles: Annotated[
-        int, typer.Option("--particles", min=20, metavar="N", help="Landings of the population.")
+        int, typer.Option("--particles", min=20, max=LANDINGS_MAX, metavar="N", help="Landings of the population.")
     ] = _PARTICLES,
     steps: Annotated[
         int,

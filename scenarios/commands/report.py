@@ -11,7 +11,7 @@ from link.errors import UserError
 from link.program.cli import JsonOption
 from link.program.extras import require
 from scenarios.commands.campaign import say_missing, table_command
-from scenarios.commands.options import WorkersOption
+from scenarios.commands.options import LANDINGS_MAX, WorkersOption
 
 _REPORT = "report"
 _SEEDS = 100
@@ -30,7 +30,9 @@ def report_or_campaign_table(
     *,
     seeds: Annotated[
         int | None,
-        typer.Option("--seeds", min=1, metavar="N", help="Flights of each case of the report [default: 100]."),
+        typer.Option(
+            "--seeds", min=1, max=LANDINGS_MAX, metavar="N", help="Flights of each case of the report [default: 100]."
+        ),
     ] = None,
     workers: WorkersOption = None,
     markdown: Annotated[

@@ -12,7 +12,7 @@ import typer
 from link.errors import UserError
 from link.program.cli import JsonOption
 from link.program.extras import require
-from scenarios.commands.options import FirstSeedOption, OneFirmwareOption, WorkersOption
+from scenarios.commands.options import LANDINGS_MAX, FirstSeedOption, OneFirmwareOption, WorkersOption
 
 if TYPE_CHECKING:
     from scenarios.config import FirmwareName
@@ -54,7 +54,9 @@ def retries_command(
         list[float] | None,
         typer.Option("--height", min=0.05, metavar="M", help="Over the pad, may be repeated [default: 1 and 0.3]."),
     ] = None,
-    seeds: Annotated[int, typer.Option("--seeds", min=1, metavar="N", help="Of each scenario and height.")] = 10,
+    seeds: Annotated[
+        int, typer.Option("--seeds", min=1, max=LANDINGS_MAX, metavar="N", help="Of each scenario and height.")
+    ] = 10,
     first_seed: FirstSeedOption = 1,
     firmware: OneFirmwareOption = None,
     workers: WorkersOption = None,

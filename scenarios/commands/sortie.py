@@ -11,7 +11,7 @@ import typer
 from link.errors import UserError
 from link.program.cli import JsonOption
 from link.program.extras import require
-from scenarios.commands.options import WorkersOption
+from scenarios.commands.options import LANDINGS_MAX, WorkersOption
 
 if TYPE_CHECKING:
     from scenarios.sortie.task import FlownSortie
@@ -41,7 +41,7 @@ def register(app: typer.Typer) -> None:
 def sortie_command(
     cell: Annotated[str, typer.Argument(metavar="CELL", help="A scenario whose vehicle drives, or urban.")],
     *,
-    seeds: Annotated[int, typer.Option("--seeds", min=1, metavar="N", help="How many.")] = 1,
+    seeds: Annotated[int, typer.Option("--seeds", min=1, max=LANDINGS_MAX, metavar="N", help="How many.")] = 1,
     first_seed: Annotated[int, typer.Option("--first-seed", min=1, metavar="N", help="The others follow.")] = 1,
     firmware: Annotated[
         str, typer.Option("--firmware", metavar="px4|ardupilot|both", help="Which autopilot flies.")
