@@ -68,6 +68,7 @@ def fly(scenario: Scenario, options: FlyOptions, progress: Progress) -> RunOutco
     if operator is None:
         result = result_table(placed, options.seed, flight.recording, ended, rules)
     else:
+        rules = replace(rules, fence_drives_along=True)
         result = _sortie_result(placed, options.seed, flight.recording, rules, ended=ended, operator=operator)
     write_json(options.folder / "result.json", result)
     return RunOutcome(result=result, timing={"real_time_factor": 1.0})

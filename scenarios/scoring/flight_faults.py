@@ -55,12 +55,18 @@ def motors_off_index(log: TruthLog, from_index: int) -> int | None:
     return from_index + int(off[0]) if len(off) else None
 
 
-def flight_faults(log: TruthLog, touched: Touches, flight: Flight, *, fence_radius_m: float) -> list[Fault]:
-    """Return the faults of a flight; its limits at touchdown are not among them."""
+def flight_faults(log: TruthLog, touched: Touches, flight: Flight, *, outside: Flags) -> list[Fault]:
+    """Return the faults of a flight; its limits at touchdown are not among them.
+
+    Args:
+        log: of the flight.
+        touched: in it.
+        flight: its take-off and contacts.
+        outside: (n,) of the fence.
+    """
     if flight.takeoff is None:
         return [(int(log.t_ns[-1]), "never took off")]
     in_air = touched.height_m.min(axis=1) > IN_AIR_M
-    outside = np.hypot(log.position_enu_m[:, 0], log.position_enu_m[:, 1]) > fence_radius_m
     signs: list[tuple[Flags, str]] = [
         (np.asarray(touched.ground.any(axis=1)), "contact with the ground"),
         (np.asarray(touched.side.any(axis=1)), "contact with the vehicle's side"),

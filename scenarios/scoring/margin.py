@@ -164,8 +164,7 @@ def _over_flight(log: TruthLog, touched: Touches, takeoff: int, rules: ScoreRule
             highest_m = float(touched.height_m[takeoff:][off].min(axis=1).max())
             terms["height with motors off"] = 1.0 - highest_m / limits.IN_AIR_M
     if math.isfinite(rules.fence_radius_m):
-        outward_m = float(np.hypot(log.position_enu_m[takeoff:, 0], log.position_enu_m[takeoff:, 1]).max())
-        terms["fence"] = (rules.fence_radius_m - outward_m) / _FENCE_SCALE_M
+        terms["fence"] = (rules.fence_radius_m - float(rules.outward_m(log)[takeoff:].max())) / _FENCE_SCALE_M
     return terms
 
 

@@ -105,7 +105,7 @@ def score_log(log: TruthLog, rules: ScoreRules, *, started_ns: int | None = None
     start_ns = _passing_ns(log, rules) if started_ns is None else started_ns
     flight = flight_of(log, touched, rules.box)
     landing = None if flight.first is None else landing_of(log, flight.first, rules)
-    found = flight_faults(log, touched, flight, fence_radius_m=rules.fence_radius_m)
+    found = flight_faults(log, touched, flight, outside=rules.outward_m(log) > rules.fence_radius_m)
     if landing is not None and not rules.carries:
         found = [fault for fault in found if fault[0] <= landing.touchdown.contact_t_ns]
     if landing is not None and landing.touchdown.on_pad:

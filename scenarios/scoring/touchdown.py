@@ -34,6 +34,7 @@ class ScoreRules:
         drag_n_s_m: linear drag of the drone on airspeed, for the trim.
         wind_mean_enu_m_s: mean wind, for the trim.
         fence_radius_m: horizontal, about the origin of W.
+        fence_drives_along: it is about the vehicle, which is a sortie's home wherever it drives.
         report_rule: S0 counts as a landing.
         carries: the deck carries a drone that has touched it. One that is only said to drive, over ground that stands,
             goes on from under it: what happens after the first contact is no fault then.
@@ -45,8 +46,15 @@ class ScoreRules:
     drag_n_s_m: float
     wind_mean_enu_m_s: Vector3 = (0.0, 0.0, 0.0)
     fence_radius_m: float = math.inf
+    fence_drives_along: bool = False
     report_rule: bool = False
     carries: bool = True
+
+    def outward_m(self, log: TruthLog) -> Array:
+        """Return how far (n,) the drone is from the middle of the fence."""
+        middle = log.vehicle_position_enu_m if self.fence_drives_along else np.zeros(3)
+        away = log.position_enu_m - middle
+        return np.asarray(np.hypot(away[:, 0], away[:, 1]))
 
 
 def rules_of(scenario: Scenario, *, wind_mean_enu_m_s: Vector3 = (0.0, 0.0, 0.0)) -> ScoreRules:

@@ -3,6 +3,7 @@
 from msgspec import Struct
 
 from link.errors import UserError
+from link.records import replace
 from scenarios.catalogue.catalogue import load_scenario
 from scenarios.catalogue.completion import place_drone
 from scenarios.catalogue.firmware_option import with_firmware
@@ -65,6 +66,7 @@ def fly_sortie(task: SortieTask) -> FlownSortie:
     flight = SortieFlight(sortie_scenario(task.cell, task.seed, task.firmware), task.seed)
     ended = flight.fly()
     rules = rules_of(flight.scenario, wind_mean_enu_m_s=mean_wind_enu_m_s(flight.scenario, flight.seed))
+    rules = replace(rules, fence_drives_along=True)
     return FlownSortie(task=task, score=score_sortie(flight.recording, flight.operator, rules, ended))
 
 

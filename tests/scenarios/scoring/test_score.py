@@ -193,6 +193,15 @@ def test_breaking_the_fence_is_unsafe() -> None:
     assert flown(path, replace(CALM, fence_radius_m=40.0)).reason == "fence broken"
 
 
+@pytest.mark.parametrize(("vehicle_m_s", "is_broken"), [(10.0, False), (1.0, True)])
+def test_fence_of_a_sortie_drives_along_with_its_vehicle(vehicle_m_s: float, is_broken: bool) -> None:
+    drone = [body(t_s, (10.0 * t_s, 3.0, 5.0), (10.0, 0.0, 0.0)) for t_s in TIMES_S[:500]]
+    vehicle = [body(t_s, (vehicle_m_s * t_s, 0.0, 0.0), (vehicle_m_s, 0.0, 0.0)) for t_s in TIMES_S[:500]]
+    result = score(drone, vehicle, [], replace(CALM, fence_radius_m=40.0, fence_drives_along=True))
+    assert (result.reason == "fence broken") is is_broken
+    assert (result.margin < 0.0) is is_broken
+
+
 def test_reported_fault_is_unsafe_whatever_the_landing() -> None:
     result = scored(Landing(), faults=("fights the pilot",))
     assert (result.tier, result.reason) == (Tier.UNSAFE, "fights the pilot")
