@@ -117,7 +117,7 @@ def _offset_max_m(pad: PadPath, fix_std_m: float | None, c: CompanionConfig) -> 
 
     A smaller offset than the descent's cone leads onto the pad's middle by either. Frames that are only taken for one
     may be two base stations', which place themselves to a metre or so; up to half of the pad's width the drone
-    comes down on it all the same.
+    comes down on it all the same. The first sightings, from far, are off by decimetres themselves.
     """
     harmless_m = (
         cone_radius_at_pad_m(pad.half_width_m, c)
@@ -125,4 +125,5 @@ def _offset_max_m(pad: PadPath, fix_std_m: float | None, c: CompanionConfig) -> 
         else pad.half_width_m
     )
     receiver_m = max(fix_std_m or 0.0, FIXED_STD_MAX_M)
-    return max(harmless_m, _STDS * math.hypot(pad.frame_offset.std_m, receiver_m, receiver_m))
+    unsure_m = _STDS * pad.frame_offset.std_m
+    return max(harmless_m + unsure_m, _STDS * math.hypot(pad.frame_offset.std_m, receiver_m, receiver_m))

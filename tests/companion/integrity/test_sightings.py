@@ -40,7 +40,7 @@ SHARE = CONFIG.integrity.rejected_share_max
 RTK = replace(NOMINAL, pad_rate_hz=30.0, frame_offset_m=0.0)
 
 
-def seen(off_m: float, *, std_m: float = 0.01, fix_std_m: float = 0.02, has_one_frame: bool = True) -> Situation:
+def seen(off_m: float, *, std_m: float = 0.0, fix_std_m: float = 0.02, has_one_frame: bool = True) -> Situation:
     offset = FrameOffset(distance_m=off_m, std_m=std_m)
     pad = replace(pad_at(), frame_offset=offset, has_one_frame=has_one_frame)
     return changed(situation(pad=pad), fix_std_m=fix_std_m)
@@ -52,6 +52,12 @@ def seen(off_m: float, *, std_m: float = 0.01, fix_std_m: float = 0.02, has_one_
 def test_pad_seen_beside_what_both_receivers_say_is_elsewhere(config: CompanionConfig, harmless_m: float) -> None:
     assert not is_seen_elsewhere(seen(harmless_m - 0.01), config)
     assert is_seen_elsewhere(seen(harmless_m + 0.01), config)
+
+
+def test_pad_is_elsewhere_once_sightings_are_sure_that_its_offset_does_harm() -> None:
+    assert not is_seen_elsewhere(seen(HALF_M + 0.02, std_m=0.13), AUTO)
+    assert is_seen_elsewhere(seen(HALF_M + 0.4, std_m=0.13), AUTO)
+    assert is_seen_elsewhere(seen(HALF_M + 0.2, std_m=0.05), AUTO)
 
 
 @given(off_m=st.floats(0.0, 50.0), std_m=st.floats(0.0, 10.0), fix_std_m=st.floats(0.0, 10.0))
