@@ -25,6 +25,10 @@ class IntegrityConfig(StrictModel):
     fix_ahead_hold_s: Positive = 1.0  # each fix of that time is; a late or early one says nothing
     # Share of one quantity's measurements of 10 s that the estimator rejects; over poor receivers 0.02 at most.
     rejected_share_max: Annotated[float, Field(gt=0.0, le=1.0)] = 0.2
+    # Harder, nothing on wheels changes its velocity: tyres grip dry asphalt with a friction of 1.2 at most. Sightings
+    # that are stamped 0.05 s wrong do, for the drone's own turns move them, and it turns to follow.
+    acceleration_max_m_s2: Positive = 12.0
+    acceleration_hold_s: Positive = 0.1  # three pictures at 30 Hz: a single one may err
     # A vehicle this near whose road is said to be farther above or below the ground that the drone took off from than a
     # step and a hill can be, has a receiver with another height: a bank beside the road, and a steep street.
     ground_within_m: Positive = 30.0

@@ -70,6 +70,9 @@ class Reason(Enum):
         "sightings of the pad contradict each other: let one detector alone see one pattern, and nobody else publish"
         " pad_pose"
     )
+    SIGHTINGS_IMPOSSIBLE = (
+        "sightings move the pad as no vehicle moves: let the detector stamp each picture with the time of its exposure"
+    )
     VEHICLE_OUTRUNS = "vehicle faster than the limit"
     STATION_OUTRUNS = "vehicle turns too fast for a station so far from it: give a nearer one, or in the frame north"
     OWN_POSITION_OLD = "own position too old"

@@ -98,6 +98,13 @@ def do_sightings_disagree(s: Situation, _: CompanionConfig) -> bool:
     return s.vehicle.are_sightings_mixed or s.vehicle.has_pad_stepped
 
 
+def are_sightings_impossible(s: Situation, c: CompanionConfig) -> bool:
+    """Return whether a pad that only sightings place is seen to change its velocity as no vehicle can."""
+    if s.pad is None or not s.pad.is_coarse:
+        return False
+    return math.hypot(*s.pad.acceleration_enu_m_s2[0, :2].tolist()) > c.integrity.acceleration_max_m_s2
+
+
 def is_seen_elsewhere(s: Situation, c: CompanionConfig) -> bool:
     """Return whether the pad is seen where neither the receivers nor what they promise allow it to be.
 

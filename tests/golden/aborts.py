@@ -17,7 +17,7 @@ from link.records import replace
 from scenarios.catalogue.catalogue import load_scenario
 from scenarios.config import Scenario
 from scenarios.faults.flight import FaultFlight
-from tests.golden.wrong_data import every_third_sighting_is_beside, velocity_is_in_ned
+from tests.golden.wrong_data import every_third_sighting_is_beside, sightings_are_stamped_late, velocity_is_in_ned
 
 SEED = 1
 _PARKED = {"chase": {"parked_wait_s": 0.5}}
@@ -211,6 +211,13 @@ ABORTS: dict[str, Abort] = {
         },
         phase=Phase.ALIGN,
         fault=every_third_sighting_is_beside,
+    ),
+    "sightings_impossible": Abort(
+        reason=Reason.SIGHTINGS_IMPOSSIBLE,
+        scenario="straight_5+sensors=nominal+camera=day+detector=model+telemetry=none",
+        phase=Phase.WAITING,
+        fault=sightings_are_stamped_late,
+        within_s=20.0,
     ),
     "seen_too_near": Abort(
         reason=Reason.SEEN_TOO_NEAR,

@@ -9,6 +9,7 @@ from link.records import replace
 from scenarios.faults.flight import FaultFlight
 
 _BESIDE_M = 2.0
+_LATE_NS = 50_000_000  # from the exposure to the picture's arrival
 
 
 def velocity_is_in_ned(flight: FaultFlight) -> None:
@@ -31,6 +32,16 @@ def every_third_sighting_is_beside(flight: FaultFlight) -> None:
         x_m, y_m, z_m = sighting.position_flu_m
         beside_m = 0.0 if next(numbers) % 3 else _BESIDE_M
         return cdr.encode(replace(sighting, position_flu_m=(x_m, y_m + beside_m, z_m)))
+
+    _change(flight, "/pad_pose", shift)
+
+
+def sightings_are_stamped_late(flight: FaultFlight) -> None:
+    """Let the detector stamp a picture when it has it, rather than with the time of its exposure."""
+
+    def shift(payload: bytes) -> bytes:
+        sighting = cdr.decode(PadSighting, payload)
+        return cdr.encode(replace(sighting, t_ns=sighting.t_ns + _LATE_NS))
 
     _change(flight, "/pad_pose", shift)
 

@@ -8,7 +8,7 @@ from companion.core.data import GRAVITY_M_S2
 from companion.core.reasons import Cause, Reason
 from companion.integrity.frames import tell_unseen
 from companion.integrity.heights import is_seen_too_near
-from companion.integrity.sightings import do_sightings_disagree, is_seen_elsewhere
+from companion.integrity.sightings import are_sightings_impossible, do_sightings_disagree, is_seen_elsewhere
 from companion.integrity.stamps import have_stamps_stepped, is_stamped_ahead
 from companion.integrity.vehicle_data import contradicts_itself
 from companion.landing.decisions.conditions import (
@@ -46,13 +46,9 @@ def must_be_seen(s: Situation, c: CompanionConfig) -> bool:
 
 
 def _looks_in_vain(s: Situation, c: CompanionConfig) -> bool:
-    """Return whether the drone has to see the pad, and is where a camera would that sees 45 degrees to each side.
-
-    Where a vehicle is that tells nothing and is out of sight, nobody knows soon: what is expected of it may run away,
-    and the drone would follow.
-    """
+    """Return whether the drone has to see the pad, and is where a camera would that sees 45 degrees to each side."""
     if c.silent_vehicle is not None and is_fix_old(s, c):
-        return True
+        return True  # soon nobody knows where it is
     if s.approach is None or c.guidance.style is LandingStyle.DIRECT:
         return False
     return must_be_seen(s, c) and s.approach.distance_m < c.chase.height_m
@@ -232,6 +228,12 @@ ABORTS = (
         phases=LANDING_PHASES,
         is_true=do_sightings_disagree,
         hold_s=lambda s, _: 0.0 if s.vehicle.has_pad_stepped else _MIXED_HOLD_S,
+    ),
+    Condition(
+        reason=Reason.SIGHTINGS_IMPOSSIBLE,
+        phases=LANDING_PHASES,
+        is_true=are_sightings_impossible,
+        hold_s=lambda _, c: c.integrity.acceleration_hold_s,
     ),
     Condition(
         reason=Reason.VEHICLE_OUTRUNS,

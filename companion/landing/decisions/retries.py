@@ -16,7 +16,13 @@ from companion.landing.state.memory import Progress
 from companion.situation.phases import Event
 from companion.situation.situation import Situation
 
-_LASTING = (Reason.OFFSET_UNKNOWN, Reason.SEEN_ELSEWHERE, Reason.SIGHTINGS_DISAGREE, Reason.ROAD_BELOW)
+_LASTING = (
+    Reason.OFFSET_UNKNOWN,
+    Reason.SEEN_ELSEWHERE,
+    Reason.SIGHTINGS_DISAGREE,
+    Reason.SIGHTINGS_IMPOSSIBLE,
+    Reason.ROAD_BELOW,
+)
 """What the drone looked with the first time is all that it has to look with."""
 
 

@@ -10,6 +10,7 @@ from companion.vehicle.pad_reach import cone_radius_m
 from link.records import replace
 from tests.companion.facts import (
     CONFIG,
+    braking_pad,
     changed,
     drone_at,
     forecast_of,
@@ -70,6 +71,9 @@ UNSAFE: dict[Reason, Situation] = {
     Reason.SEEN_ELSEWHERE: situation(pad=replace(pad_at(), frame_offset=FrameOffset(distance_m=1.0, std_m=0.01))),
     Reason.VEHICLE_TAKEN: changed(situation(), rival=Rival(drone="drone2", is_this_drone=False)),
     Reason.SIGHTINGS_DISAGREE: changed(situation(), are_sightings_mixed=True),
+    Reason.SIGHTINGS_IMPOSSIBLE: situation(
+        pad=replace(braking_pad(CONFIG.integrity.acceleration_max_m_s2 + 0.1), is_coarse=True)
+    ),
     Reason.SEEN_TOO_NEAR: changed(situation(), range_height_m=0.5),
     Reason.BELOW_PAD: situation(-CONFIG.descent.sink.press_depth_m - CONFIG.touchdown.height_max_m - 0.01),
     Reason.ROAD_BELOW: changed(
