@@ -70,10 +70,10 @@ def vague_height_m(pad: PadPath, config: CompanionConfig) -> float:
 
 
 def waiting_rise_m(waiting_enu_m: float, s: Situation, config: CompanionConfig) -> float:
-    """Return how much higher the drone waits for a pad whose height is vague, to be clear of where its roof may be.
+    """Return how much higher the drone waits for a pad that is near or whose height is vague, to be clear of its roof.
 
-    A roof that is said to be too high for the chase may well be lower: the drone climbs and looks. One that is too high
-    by more than what its height is unsure is refused.
+    A roof that is said to be too high for the chase may well be lower: the drone climbs and looks. One that is known to
+    be would drive into a drone that stays. No vehicle makes it climb to more than twice the height at which it waits.
 
     Args:
         waiting_enu_m: height in W of the place where the drone is to wait.
@@ -83,8 +83,10 @@ def waiting_rise_m(waiting_enu_m: float, s: Situation, config: CompanionConfig) 
     if s.pad is None:
         return 0.0
     height_m = waiting_enu_m - s.feet_offset_m - float(s.pad.position_enu_m[0, 2])
-    lacking_m, unsure_m = chase_floor_m(config) - height_m, vague_height_m(s.pad, config)
-    return min(lacking_m + config.takeoff.reached_distance_m, unsure_m) if 0.0 < lacking_m < unsure_m else 0.0
+    lacking_m, most_m = chase_floor_m(config) - height_m, vague_height_m(s.pad, config)
+    if s.approach is not None and s.approach.distance_m <= config.integrity.ground_within_m:
+        most_m = max(most_m, config.takeoff.waiting_height_m)
+    return min(lacking_m + config.takeoff.reached_distance_m, most_m) if 0.0 < lacking_m < most_m else 0.0
 
 
 def rise_from_ground_m(waiting_enu_m: float, s: Situation, dt_s: float, config: CompanionConfig) -> float:

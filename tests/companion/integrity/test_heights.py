@@ -218,8 +218,9 @@ def test_heights_that_are_told_differ_by_what_they_are_to_be_raised(above_waitin
 
 
 @pytest.mark.slow
-def test_drone_that_hovers_too_low_says_so_while_it_waits() -> None:
-    flight = Flight(vehicle=KnownVehicle((-400.0, 0.0, 4.0), (8.0, 0.0, 0.0)), pad=replace(PAD, height_m=4.0))
+def test_drone_that_cannot_climb_over_a_roof_says_so_while_it_waits() -> None:
+    roof_m = 2.0 * CONFIG.takeoff.waiting_height_m
+    flight = Flight(vehicle=KnownVehicle((-400.0, 0.0, roof_m), (8.0, 0.0, 0.0)), pad=replace(PAD, height_m=roof_m))
     flight.start_and_reach(Phase.WAITING)
     flight.run(47.0)
     assert flight.outputs is not None
