@@ -42,7 +42,7 @@ ARDUPILOT_RULES = (
         unit="deg",
         level=Level.FAIL,
         test=lambda value, speed_m_s: value <= 0.0 or value >= tilt_needed_deg(speed_m_s),
-        advised=lambda _: 0.0,
+        advised=lambda *_: 0.0,
         reason="a tilt limit of its own for flight by position, beside the general one; 0 leaves it to that",
     ),
     speed_rule(
@@ -95,7 +95,7 @@ ARDUPILOT_RULES = (
         unit="",
         level=Level.FAIL,
         test=lambda value, _: not int(value) & _NO_STABILISATION,
-        advised=lambda _: 0.0,
+        advised=lambda value, _: float(int(value) & ~_NO_STABILISATION),
         reason="bits 4 and 5 switch off the holding of position and velocity",
     ),
     equals(
@@ -109,7 +109,7 @@ ARDUPILOT_RULES = (
         unit="",
         level=Level.WARN,
         test=lambda value, _: value in _EKF_ACTIONS,
-        advised=lambda _: 1.0,
+        advised=lambda *_: 1.0,
         reason="an estimator that fails must end the flight by itself; without a position nothing can be chased",
     ),
     ParameterRule(
@@ -117,7 +117,7 @@ ARDUPILOT_RULES = (
         unit="s",
         level=Level.FAIL,
         test=lambda value, _: value == 0.0 or value >= _DISARM_DELAY_MIN_S,
-        advised=lambda _: 10.0,
+        advised=lambda *_: 10.0,
         reason="armed and idle it disarms after this; the take-off begins 4 s after arming",
     ),
 )
@@ -135,7 +135,7 @@ ARDUPILOT_LAUNCH_RULES = (
         unit="m",
         level=Level.WARN,
         test=lambda value, _: value >= _LEVEL_BELOW_M,
-        advised=lambda _: _LEVEL_BELOW_M,
+        advised=lambda *_: _LEVEL_BELOW_M,
         reason="below this height its take-off does not steer: at 0 it brakes against the deck's velocity at once",
     ),
 )

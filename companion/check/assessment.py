@@ -74,7 +74,8 @@ def _shared_id(seen: AutopilotFacts) -> list[Finding]:
     """Return the line for a second autopilot under the same system id, none where there is no such one."""
     if not seen.is_id_shared:
         return []
-    advice = "give each drone its own MAV_SYS_ID (PX4) or SYSID_THISMAV (ArduPilot), and companion its --system-id"
+    names = "MAV_SYS_ID (PX4), SYSID_THISMAV or MAV_SYSID (ArduPilot)"
+    advice = f"give each drone its own {names}, and companion its --system-id"
     return [make_finding("system id", "two autopilots answer under it", Level.FAIL, advice, "both would arm")]
 
 

@@ -62,7 +62,7 @@ PX4_RULES = (
         unit="s",
         level=Level.WARN,
         test=lambda value, _: 0.0 < value <= 5.0,
-        advised=lambda _: 2.0,
+        advised=lambda *_: 2.0,
         reason="disarms by itself once PX4 believes in the landing, should the companion fail there",
     ),
     ParameterRule(
@@ -70,7 +70,7 @@ PX4_RULES = (
         unit="",
         level=Level.WARN,
         test=lambda value, _: bool(int(value) & _OVERRIDE_IN_OFFBOARD),
-        advised=lambda _: 3.0,
+        advised=lambda value, _: float(int(value) | _OVERRIDE_IN_OFFBOARD),
         reason="bit 1 lets the pilot's sticks end OFFBOARD; without it only the mode switch does",
     ),
 )
@@ -82,7 +82,7 @@ PX4_LAUNCH_RULES = (
         unit="s",
         level=Level.FAIL,
         test=lambda value, _: value <= 0.0 or value >= _LIFT_OFF_S,
-        advised=lambda _: 10.0,
+        advised=lambda *_: 10.0,
         reason="so long after arming PX4 disarms a drone that still stands; 0 or less never does",
     ),
 )

@@ -48,7 +48,7 @@ class ParameterRule:
         unit: of the rule.
         level: when the test fails.
         test: of the value for a vehicle's speed in m/s.
-        advised: the value to set for that speed; it passes the test.
+        advised: the value to set in place of another for that speed; it passes the test.
         reason: why it matters.
         is_fatal: values that fail whatever the level, None when there are none.
     """
@@ -57,7 +57,7 @@ class ParameterRule:
     unit: str
     level: Level
     test: Callable[[float, float], bool]
-    advised: Callable[[float], float]
+    advised: Callable[[float, float], float]
     reason: str
     is_fatal: Callable[[float], bool] | None = None
 
@@ -82,7 +82,7 @@ def at_least(
         unit=unit,
         level=level,
         test=lambda value, speed_m_s: value >= needed(speed_m_s) - _ROUNDING,
-        advised=lambda speed_m_s: step * math.ceil((needed(speed_m_s) - _ROUNDING) / step),
+        advised=lambda _, speed_m_s: step * math.ceil((needed(speed_m_s) - _ROUNDING) / step),
         reason=reason,
     )
 
@@ -101,7 +101,7 @@ def equals(
         unit="",
         level=level,
         test=lambda value, _: value == wanted,
-        advised=lambda _: wanted,
+        advised=lambda *_: wanted,
         reason=reason,
         is_fatal=is_fatal,
     )
@@ -116,7 +116,7 @@ def setpoint_loss_rule(
         unit="s",
         level=level,
         test=lambda value, _: range_s[0] <= value <= range_s[1],
-        advised=lambda _: advised_s,
+        advised=lambda *_: advised_s,
         reason=reason,
     )
 
@@ -203,7 +203,7 @@ def _judge(rule: ParameterRule, parameters: Mapping[str, float], speed_m_s: floa
     found = _shown(parameters[known.name], value, rule.unit, known)
     if rule.test(value, speed_m_s):
         return pass_line(known.name, found)
-    advised = rule.advised(speed_m_s)
+    advised = rule.advised(value, speed_m_s)
     return Finding(
         name=known.name,
         level=Level.FAIL if rule.is_fatal is not None and rule.is_fatal(value) else rule.level,

@@ -124,7 +124,7 @@ class Reason(Enum):
     DRONE_TAKEN = "another companion is there for this drone, and was there first: end one of them"
     SYSTEM_ID_SHARED = (
         "two autopilots answer under the same system id, and both would arm: give each drone its own (MAV_SYS_ID, "
-        "SYSID_THISMAV), and see --system-id"
+        "SYSID_THISMAV, MAV_SYSID), and see --system-id"
     )
     VEHICLE_TAKEN = "{} lands on this vehicle, or stands on it: wait until it has gone"
     STAMPS_LATE = "vehicle's fixes come {:.1f} s after their stamps: set its clock by GNSS or NTP, or use a faster link"

@@ -34,5 +34,5 @@ def _rows(rules: Sequence[ParameterRule]) -> Iterator[tuple[str, ...]]:
             code(one.name) + ("" if one.per_unit == 1.0 else f" ({rule.unit} / {one.per_unit:g})")
             for one in rule.spellings
         )
-        advised = (f"{rule.advised(speed_m_s):g}" for speed_m_s in SPEEDS_M_S)
+        advised = (f"{rule.advised(0.0, speed_m_s):g}" for speed_m_s in SPEEDS_M_S)
         yield ", ".join(names), *advised, rule.unit, rule.reason

@@ -37,7 +37,7 @@ def test_the_page_of_reasons_says_what_ends_an_approach_or_forbids_it_and_what_t
 def test_the_page_of_parameters_has_each_that_the_check_judges_and_what_it_advises(firmware: Firmware) -> None:
     part = parameters_page().split(f"## {firmware.name}\n")[1].split("\n## ")[0]
     for rule in firmware.rules_for(SINK_M_S, launches=True):
-        advised = " | ".join(f"{rule.advised(speed):g}" for speed in SPEEDS_M_S)
+        advised = " | ".join(f"{rule.advised(0.0, speed):g}" for speed in SPEEDS_M_S)
         assert f"`{rule.spellings[0].name}`" in part
         assert f"| {advised} | {rule.unit} | {rule.reason} |" in part
 
@@ -46,7 +46,7 @@ def test_the_page_of_parameters_has_each_that_the_check_judges_and_what_it_advis
 def test_parameters_that_a_page_names_have_the_value_that_the_check_advises(page: str) -> None:
     text = (DOCS / page).read_text(encoding="utf-8")
     advised = {
-        spelling.name: {f"{rule.advised(speed):g}" for speed in SPEEDS_M_S}
+        spelling.name: {f"{rule.advised(0.0, speed):g}" for speed in SPEEDS_M_S}
         for firmware in FIRMWARES.values()
         for rule in firmware.rules_for(SINK_M_S)
         for spelling in rule.spellings

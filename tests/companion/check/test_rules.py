@@ -63,11 +63,21 @@ def names(findings: list[Finding], level: Level) -> set[str]:
 
 
 @pytest.mark.parametrize(("rule", "spelling"), SPELLED, ids=[spelling.name for _, spelling in SPELLED])
-@given(speed_m_s=st.floats(0.0, 30.0))
-def test_advised_value_passes(rule: ParameterRule, spelling: Spelling, speed_m_s: float) -> None:
-    value = rule.advised(speed_m_s) * spelling.per_unit
+@given(before=st.floats(0.0, 255.0), speed_m_s=st.floats(0.0, 30.0))
+def test_advised_value_passes(rule: ParameterRule, spelling: Spelling, before: float, speed_m_s: float) -> None:
+    value = rule.advised(before, speed_m_s) * spelling.per_unit
     (found,) = judge([rule], {spelling.name: value}, speed_m_s)
     assert found.level is Level.PASS
+
+
+@pytest.mark.parametrize(
+    ("rules", "name", "before", "advised"),
+    [(ARDUPILOT_RULES, "GUID_OPTIONS", 0b110101, 0b101), (PX4_RULES, "COM_RC_OVERRIDE", 0b1101, 0b1111)],
+)
+def test_advice_keeps_the_other_bits(
+    rules: tuple[ParameterRule, ...], name: str, before: float, advised: float
+) -> None:
+    assert advised_values(judge(rules, {name: before}, 5.0)) == {name: advised}
 
 
 @pytest.mark.parametrize("rules", [PX4_RULES, ARDUPILOT_RULES])
