@@ -36,7 +36,7 @@ from companion.vehicle.pad import PadPath
 from link.frames.rotations import yaw_of
 from link.records import replace
 
-_DISARM_MAX_S = 1.0  # it takes 0.6 s where the plain one is refused; the companion waits for 1.5 s before it ends
+_DISARM_MAX_S = 1.0  # it takes 0.6 s where the plain one is refused; the companion waits for longer before it ends
 
 
 def companion_step(memory: StepMemory, inputs: StepInputs, system: System) -> tuple[StepMemory, StepOutputs]:
@@ -191,7 +191,7 @@ def _drive(
     for command, result in inputs.acknowledgements:
         driver_memory = inputs.driver.acknowledged(driver_memory, command, result)
     hands_over = inputs.leaving and not _finishes_disarm(memory, situation)
-    desire = Desire(release=True) if hands_over else _desire(memory, situation, config)
+    desire = _last_desire(memory, situation) if hands_over else _desire(memory, situation, config)
     driver_memory, commands = inputs.driver.act(driver_memory, inputs.autopilot, desire, inputs.monotonic_ns)
     if driver_memory is not memory.control.driver:
         memory = replace(memory, control=replace(memory.control, driver=driver_memory))
@@ -201,6 +201,16 @@ def _drive(
 def _finishes_disarm(memory: StepMemory, situation: Situation) -> bool:
     """Return whether the motors are being switched off: an autopilot that hovers by itself would leave the pad."""
     return memory.progress.phase is Phase.TOUCHDOWN and _in_phase_s(memory, situation) < _DISARM_MAX_S
+
+
+def _last_desire(memory: StepMemory, situation: Situation) -> Desire:
+    """Return what is wanted of the autopilot before the companion ends: a hover, but no motors left on on the ground.
+
+    The disarm is a plain one, which an autopilot that has left the ground refuses.
+    """
+    is_on_ground = memory.progress.phase is Phase.TAKEOFF and situation.autopilot.landed is True
+    is_refused = memory.control.driver.disarm_refusals > 0
+    return Desire(armed=False) if is_on_ground and not is_refused else Desire(release=True)
 
 
 def _in_phase_s(memory: StepMemory, situation: Situation) -> float:

@@ -72,9 +72,13 @@ def was_asked_to_arm(memory: DriverMemory, since_ns: int) -> bool:
 
 
 def ask_to_disarm(memory: DriverMemory, desire: Desire, monotonic_ns: int) -> Requested:
-    """Ask plainly; once that was refused, and only with the evidence complete, force it."""
+    """Ask plainly; once that was refused, and only with the evidence complete, force it.
+
+    Motors that are asked to stop were told to turn, so no order to arm is under way.
+    """
     force = desire.force_disarm and memory.disarm_refusals > 0
-    memory = replace(memory, disarm_asked=True, arm_asked=False, arm_accepted=False)
+    asked_ns = {order: at_ns for order, at_ns in (memory.asked_ns or {}).items() if order != arm(armed=True)}
+    memory = replace(memory, disarm_asked=True, arm_asked=False, arm_accepted=False, asked_ns=asked_ns)
     return ask(memory, arm(armed=False, force=force), monotonic_ns, _DISARM_AGAIN_S)
 
 

@@ -3,7 +3,7 @@
 import time
 from collections.abc import Callable
 
-from companion.autopilots.messages import is_arming
+from companion.autopilots.messages import ARMED_TOLD_S, is_arming
 from companion.runtime.node import CompanionNode
 from companion.situation.phases import Phase
 from link.errors import UserError
@@ -63,7 +63,8 @@ class OwnStart:
             )
 
 
-_LEAVE_MAX_S = 1.5  # a mode may be confirmed by the next heartbeat only
+LEAVE_MAX_S = ARMED_TOLD_S + 1.0
+"""So long an end in flight may take: motors just asked for are told of by then, and what came next by a heartbeat."""
 
 
 def hand_over(node: CompanionNode, turn: Callable[[], None], log: Log) -> None:
@@ -95,7 +96,7 @@ def may_turn(node: CompanionNode) -> bool:
 
 
 def _is_released(node: CompanionNode, turn: Callable[[], None]) -> bool:
-    until_s = time.monotonic() + _LEAVE_MAX_S
+    until_s = time.monotonic() + LEAVE_MAX_S
     while node.flies and time.monotonic() < until_s:
         turn()
     return not node.flies

@@ -37,6 +37,7 @@ class FakePx4(FakeAutopilot):
     geoid_height_m: float | None = 0.0  # None: its receiver does not tell it
     vehicle_type: int = mavlink.MAV_TYPE_QUADROTOR
     utc_set_by_ns: int = 0
+    landed_state: int = mavlink.MAV_LANDED_STATE_ON_GROUND
     now_ns: int = START_NS
 
     def message(self, message_id: int, t_ns: int) -> Message:
@@ -69,7 +70,7 @@ class FakePx4(FakeAutopilot):
         return mavlink.MAVLink_current_mode_message(0, self.custom_mode, self.custom_mode)
 
     def _landed_state(self) -> Message:
-        return mavlink.MAVLink_extended_sys_state_message(0, mavlink.MAV_LANDED_STATE_ON_GROUND)
+        return mavlink.MAVLink_extended_sys_state_message(0, self.landed_state)
 
     def _origin(self) -> Message:
         return mavlink.MAVLink_gps_global_origin_message(*PLACE_1E7, round(self.origin_altitude_m * 1e3))

@@ -2,8 +2,12 @@
 
 import pytest
 
+from companion.autopilots.ardupilot import ArduPilotDriver
+from companion.autopilots.driver import Driver
+from companion.autopilots.px4 import Px4Driver
 from companion.situation.phases import Phase
 from link.messages import Command
+from link.records import replace
 from tests.companion.world import DISARM, FLYING, SET_MODE, UTC_AHEAD_NS, Flight, on_deck, reached
 
 ON_VEHICLE = frozenset({Phase.TOUCHDOWN, Phase.ON_DECK})
@@ -33,6 +37,35 @@ def test_companion_that_ends_on_the_pad_switches_the_motors_off_first() -> None:
     assert Phase.TOUCHDOWN not in [phase for phase, *_ in flight.told(SET_MODE)]
 
 
+def armed_on_ground() -> Flight:
+    """A drone whose motors turn and that has not lifted off, by its autopilot's word."""
+    flight = reached(Phase.TAKEOFF)
+    flight.view = replace(flight.view, landed=True)
+    flight.refuses_plain_disarm = False
+    return flight
+
+
+@pytest.mark.parametrize("driver", [Px4Driver(), ArduPilotDriver()])
+def test_companion_that_ends_before_the_lift_off_switches_the_motors_off_plainly(driver: Driver) -> None:
+    flight = armed_on_ground()
+    flight.driver, flight.leaving, modes = driver, True, _modes(flight)
+    orders = len(flight.told(DISARM))
+    flight.step()
+    assert [one[2:] for one in flight.told(DISARM)[orders:]] == [(0.0, 0.0)]
+    assert not flight.view.armed
+    assert _modes(flight) == modes
+
+
+def test_companion_that_ends_before_the_lift_off_lets_an_autopilot_hover_that_refuses_to_disarm() -> None:
+    flight = armed_on_ground()
+    flight.refuses, flight.leaving, modes = frozenset({DISARM}), True, _modes(flight)
+    while _modes(flight) == modes:
+        flight.view = replace(flight.view, landed=True)
+        flight.step()
+        assert flight.monotonic_ns - flight.memory.progress.since_ns < 2e9
+    assert [force for *_, force in flight.told(DISARM)[1:]] == [0.0]
+
+
 def test_companion_that_ends_on_the_pad_does_not_wait_for_a_disarm_that_never_comes() -> None:
     flight = reached(Phase.TOUCHDOWN)
     flight.refuses, flight.leaving, modes = frozenset({DISARM}), True, _modes(flight)
@@ -57,6 +90,6 @@ def test_companion_that_ends_while_the_drone_stands_on_the_deck_switches_the_mot
     flight = armed_on_deck()
     assert flight.history[-1] is Phase.ON_DECK
     flight.leaving, modes = True, _modes(flight)
-    flight.run(0.6)
+    flight.run_until(Phase.SECURED, limit_s=0.6)
     assert not flight.view.armed
-    assert _modes(flight) == modes
+    assert Phase.TOUCHDOWN not in [phase for phase, *_ in flight.told(SET_MODE)[modes:]]

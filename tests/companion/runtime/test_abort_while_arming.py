@@ -3,7 +3,7 @@
 import pytest
 
 from companion.core.reasons import Reason
-from companion.runtime.start_and_handover import may_turn
+from companion.runtime.start_and_handover import LEAVE_MAX_S, may_turn
 from companion.situation.phases import Phase
 from link.mavlink.dialect import mavlink
 from link.messages import Command
@@ -73,8 +73,22 @@ def test_motors_that_a_person_stops_before_a_heartbeat_told_of_them_stay_off(aft
     assert setup.node.outputs.status.reason_code == Reason.DISARMED.name
 
 
-def test_drone_that_arms_as_the_companion_ends_is_handed_over_and_not_said_to_be_off() -> None:
+def test_drone_that_arms_on_the_ground_as_the_companion_ends_is_disarmed_once_it_tells_that_it_is_armed() -> None:
     setup = started({})
+    assert setup.autopilot.armed
+    assert setup.node.flies
+    setup.node.leave()
+    setup.run(LEAVE_MAX_S)
+    orders = {(message.param1, message.param2) for message in setup.autopilot.commands(ARM)[1:]}
+    assert orders == {(0.0, 0.0)}  # plain ones
+    assert not setup.node.autopilot.state.view.armed
+    assert not may_turn(setup.node)
+
+
+def test_drone_that_arms_as_the_companion_ends_and_may_fly_is_handed_over_and_not_said_to_be_off() -> None:
+    setup = started({})
+    setup.autopilot.landed_state = mavlink.MAV_LANDED_STATE_IN_AIR
+    setup.run(0.2)
     assert setup.autopilot.armed
     assert setup.node.flies
     setup.node.leave()
