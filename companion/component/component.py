@@ -4,7 +4,13 @@ from collections.abc import Iterable, Sequence
 
 from companion.autopilots.state import AutopilotState
 from companion.component.commands import COMMANDS, StationCommands
-from companion.component.identity import ComputerLoad, component_information, computer_status, heartbeat_state
+from companion.component.identity import (
+    ComputerLoad,
+    component_information,
+    computer_status,
+    heartbeat_state,
+    tells_of_flight,
+)
 from companion.component.metadata import FileServer, component_metadata
 from companion.component.pad_messages import adsb_vehicle, follow_target
 from companion.component.parameters import answers
@@ -19,6 +25,7 @@ from link.mavlink.dialect import (
     Message,
     mavlink,
 )
+from link.mavlink.peer import LOST_AFTER_NS
 from link.mavlink.session import MavlinkSession
 from link.mavlink.timer import Timer
 from link.messages import Command, CommandReply, LandingStatus
@@ -107,6 +114,16 @@ class MavlinkComponent:
         self._texts = Texts()
         self._pad_timer = Timer(_PAD_NS)
         self._load: ComputerLoad | None = None
+        self._other_flies_ns: int | None = None
+
+    def is_drone_flown(self, phase: Phase, local_ns: int) -> bool:
+        """Return whether another companion flies the drone that this one does not, as its heartbeats have just told.
+
+        They come where the autopilot passes them on, and need no network that both companions share. Who flies goes
+        on: an echo of its own heartbeats says the same.
+        """
+        told_ns = self._other_flies_ns
+        return phase not in FLYING_PHASES and told_ns is not None and local_ns - told_ns <= LOST_AFTER_NS
 
     def take(
         self, requests: Sequence[Message], config: CompanionConfig, phase: Phase, local_ns: int
@@ -118,6 +135,8 @@ class MavlinkComponent:
                 self._take_command(message, config, local_ns)
             elif kind == COMMAND_CANCEL_ID:
                 self._send(self._commands.cancel(message))
+            elif kind == mavlink.MAVLINK_MSG_ID_HEARTBEAT:
+                self._hear_other(message, phase, local_ns)
             elif kind == mavlink.MAVLINK_MSG_ID_FILE_TRANSFER_PROTOCOL:
                 self._send(self._files.answer(message, local_ns))
             else:
@@ -126,6 +145,10 @@ class MavlinkComponent:
                 self._send(told)
         self._send(self._files.continue_burst())
         return config
+
+    def _hear_other(self, heartbeat: Message, phase: Phase, local_ns: int) -> None:
+        if tells_of_flight(heartbeat) and phase not in FLYING_PHASES:
+            self._other_flies_ns = local_ns
 
     def next_command(self) -> Command | None:
         """Return what the step that is made now is commanded; None when nobody waits for one."""

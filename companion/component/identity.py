@@ -66,6 +66,12 @@ def heartbeat_state(phase: Phase) -> tuple[int, int]:
     return int(status), PHASE_NUMBERS[phase]
 
 
+def tells_of_flight(heartbeat: Message) -> bool:
+    """Return whether the companion whose heartbeat this is flies the drone: its state and phase say so together."""
+    told = heartbeat.system_status, heartbeat.custom_mode
+    return told in {heartbeat_state(phase) for phase in FLYING_PHASES}
+
+
 def component_information(boot_ms: int) -> Message:
     """Return the COMPONENT_INFORMATION_BASIC, `boot_ms` after the autopilot's start."""
     texts = (

@@ -68,6 +68,7 @@ class CompanionNode:
         self.open_to_strangers: tuple[str, ...] = ()  # which links are, for the status
         self.system = system
         self._rival: Rival | None = None
+        self._other_companion = Rival(drone=keys.drone, is_this_drone=True)
         self._leaving = False
         self._clock = StepClock(system.config.setpoints.rate_hz)
         self.vehicle = VehicleLink(keys, self._clock, system.config.silent_vehicle)
@@ -210,7 +211,7 @@ class CompanionNode:
             driver=self.autopilot.driver,
             acknowledgements=self.autopilot.take_acknowledgements(),
             vehicle=self.vehicle.take(is_utc_known=way.is_utc_known),
-            rival=self._rival,
+            rival=self._other_companion if self._component.is_drone_flown(self.phase, local_ns) else self._rival,
             command=command,
             station=station,
             leaving=self._leaving,

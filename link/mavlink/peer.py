@@ -51,6 +51,12 @@ def is_request(message: Message, own: Address) -> bool:
     return kind in _TO_ALL and own.is_meant_by(message)
 
 
+def is_beat_of(message: Message, address: Address) -> bool:
+    """Whether a message is the heartbeat of `address`."""
+    source = Address(message.get_srcSystem(), message.get_srcComponent())
+    return message.get_msgId() == mavlink.MAVLINK_MSG_ID_HEARTBEAT and source == address
+
+
 class Peer:
     """The autopilot as seen from a companion.
 
@@ -72,7 +78,8 @@ class Peer:
 
     def accepts(self, message: Message) -> bool:
         """Whether a message is from the autopilot and for us or for everybody; anybody's requests are kept."""
-        if is_request(message, self._own) and len(self._requests) < _REQUESTS_MAX:
+        is_for_us = is_request(message, self._own) or is_beat_of(message, self._own)
+        if is_for_us and len(self._requests) < _REQUESTS_MAX:
             self._requests.append(message)
         if self.target_system_id is None:
             return is_autopilot_heartbeat(message)
@@ -85,7 +92,7 @@ class Peer:
         )
 
     def take_requests(self) -> list[Message]:
-        """Gives what was asked of us as a component since the last call."""
+        """Gives what was asked of us as a component since the last call, and heartbeats of whoever has our address."""
         taken, self._requests = self._requests, []
         return taken
 

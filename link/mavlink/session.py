@@ -195,7 +195,7 @@ class MavlinkSession:
         return self._codec.take_input()
 
     def take_requests(self) -> list[Message]:
-        """Gives what was asked of us as a component since the last call, by whatever system the autopilot passes on."""
+        """Gives what was asked of us as a component since the last call, and heartbeats of whoever has our address."""
         return self._peer.take_requests()
 
     def _take(self, message: Message, t_ns: int) -> list[Event]:
