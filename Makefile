@@ -16,8 +16,8 @@ unexport PYTHONDONTWRITEBYTECODE
 # The only files with tests of the two kinds, so that not all of the others are loaded for them.
 WIRE = $(shell grep -rlF pytest.mark.wire tests --include='test_*.py' | sort)
 # They take longest, so they begin first.
-LONG = $(addprefix tests/,conformance/test_mavsdk.py security/test_secured_landing.py integration/test_view.py \
-    scenarios/bench/test_bench.py integration/test_stations.py integration/test_lost_partners.py)
+LONG = $(addprefix tests/,integration/test_fly.py conformance/test_mavsdk.py security/test_secured_landing.py \
+    integration/test_view.py scenarios/bench/test_bench.py integration/test_stations.py integration/test_lost_partners.py)
 ALONE = $(shell grep -rlF pytest.mark.alone tests --include='test_*.py' | sort)
 
 .PHONY: setup demo test check fast simulated docs lint style types lock fuzz clean
