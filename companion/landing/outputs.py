@@ -95,7 +95,7 @@ def landing_status(memory: StepMemory, situation: Situation, config: CompanionCo
         ),
         armed=situation.autopilot.armed,
         fix_age_s=situation.vehicle.fix_age_s,
-        flown_by=_flown_by(situation.autopilot),
+        flown_by=_flown_by(phase, situation.autopilot),
         battery_share=situation.autopilot.battery_share,
         contact_forecast=memory.forecast.contact,
         unverified=unverified(situation, config),
@@ -112,11 +112,16 @@ def _station_offset_m(memory: StepMemory) -> Vector3 | None:
     return ahead_m, left_m, up_m
 
 
-def _flown_by(autopilot: AutopilotView) -> str:
-    """Return who flies the drone, for people; empty while the autopilot is silent."""
+def _flown_by(phase: Phase, autopilot: AutopilotView) -> str:
+    """Return who flies the drone, for people; empty while the autopilot is silent.
+
+    A pilot who gives the companion's mode back after taking over still flies: no setpoints come until a start.
+    """
     if not autopilot.link_up:
         return ""
-    return "companion" if autopilot.in_control else "failsafe" if autopilot.failsafe else "other"
+    if autopilot.in_control and phase is not Phase.PILOT:
+        return "companion"
+    return "failsafe" if autopilot.failsafe else "other"
 
 
 def _cause(memory: StepMemory, situation: Situation, config: CompanionConfig) -> Cause:

@@ -41,7 +41,8 @@ def test_pilots_mode_change_stops_setpoints_in_the_same_step_and_for_good(phase:
     assert first.text is not None
     flight.run(1.0)
     flight.view = replace(flight.view, in_control=True)
-    assert all(outputs.setpoint is None for outputs in flight.run(5.0))
+    given_back = flight.run(5.0)
+    assert all(outputs.setpoint is None and outputs.status.flown_by == "other" for outputs in given_back)
     assert len(flight.commands) == commands
     assert flight.phase is Phase.PILOT
 
