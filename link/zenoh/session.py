@@ -23,9 +23,10 @@ from link.zenoh.replies import Replies
 __all__ = ["DEFAULT_ENDPOINT", "Alive", "Inbox", "Sample", "WakeUp", "ZenohOptions", "ZenohSession", "open_session"]
 
 INBOX_CAPACITY = 1024
+"""Ten seconds of a 100 Hz stream."""
+
 SENSOR_BYTES_MAX = 8192
 """Of one fix, velocity, IMU or sighting; a ROS odometry takes 0.7 kB and its names. What is larger no sensor sends."""
-"""Ten seconds of a 100 Hz stream."""
 
 
 def taken(payload: zenoh.ZBytes, bytes_max: int | None) -> bytes:
