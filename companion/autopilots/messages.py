@@ -130,6 +130,11 @@ def is_arming(memory: DriverMemory, monotonic_ns: int) -> bool:
     return asked_ns is not None and (monotonic_ns - asked_ns) * 1e-9 < ARMED_TOLD_S
 
 
+def may_turn(view: AutopilotView, memory: DriverMemory, monotonic_ns: int) -> bool:
+    """Return whether motors turn, or may although nothing has told so yet."""
+    return view.armed or is_arming(memory, monotonic_ns)
+
+
 def set_mode(main: int, sub: int = 0) -> AutopilotCommand:
     """Return the command that enters a mode, by the autopilot's own numbers."""
     parameters = (_CUSTOM_MODE_FLAG, float(main), float(sub), 0.0, 0.0, 0.0, 0.0)

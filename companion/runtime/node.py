@@ -4,7 +4,7 @@ The wire loop, the lockstep campaigns and the tests all run this one.
 """
 
 from companion.autopilots.link import AutopilotLink
-from companion.autopilots.messages import is_arming
+from companion.autopilots.messages import may_turn
 from companion.component.component import MavlinkComponent
 from companion.component.identity import ComputerLoad
 from companion.config.companion import CompanionConfig
@@ -153,8 +153,8 @@ class CompanionNode:
         """Whether motors turn at this companion's command, or may."""
         view = self.autopilot.state.view
         steers = not self._dry_run and self.phase in FLYING_PHASES
-        may_turn = view.armed or is_arming(self.memory.control.driver, self._clock.monotonic_ns)
-        return steers and view.link_up and may_turn and view.in_control
+        turns = may_turn(view, self.memory.control.driver, self._clock.monotonic_ns)
+        return steers and view.link_up and turns and view.in_control
 
     def poll(self, local_ns: int) -> bool:
         """Do what is due; return whether a step was made."""

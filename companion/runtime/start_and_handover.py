@@ -3,7 +3,7 @@
 import time
 from collections.abc import Callable
 
-from companion.autopilots.messages import ARMED_TOLD_S, is_arming
+from companion.autopilots.messages import ARMED_TOLD_S, may_turn
 from companion.runtime.node import CompanionNode
 from companion.situation.phases import Phase
 from link.errors import UserError
@@ -82,17 +82,16 @@ def hand_over(node: CompanionNode, turn: Callable[[], None], log: Log) -> None:
     node.leave()
     if not _is_released(node, turn):
         log.warning("handed over without an answer: the autopilot acts by its parameter", name=driver.timeout_parameter)
-    elif may_turn(node):
+    elif motors_may_turn(node):
         log.warning("handed over: the autopilot flies the drone", mode=driver.hover_mode)
     else:
         log.info("the motors are off")
 
 
-def may_turn(node: CompanionNode) -> bool:
-    """Return whether motors turn, or were asked for so lately that nothing may have told of it yet."""
+def motors_may_turn(node: CompanionNode) -> bool:
+    """Return whether motors turned, or might have, at the last step; a node that has made none has ordered nothing."""
     made = node.inputs
-    is_told = node.autopilot.state.view.armed
-    return is_told or (made is not None and is_arming(node.memory.control.driver, made.monotonic_ns))
+    return made is not None and may_turn(node.autopilot.state.view, node.memory.control.driver, made.monotonic_ns)
 
 
 def _is_released(node: CompanionNode, turn: Callable[[], None]) -> bool:

@@ -2,7 +2,7 @@
 
 import math
 
-from companion.autopilots.messages import is_arming, was_arming_undone, was_asked_to_arm
+from companion.autopilots.messages import is_arming, may_turn, was_arming_undone, was_asked_to_arm
 from companion.config.companion import CompanionConfig
 from companion.config.planning import LandingStyle
 from companion.core.reasons import Cause, Reason
@@ -213,8 +213,8 @@ def _motors_off(progress: Progress, control: ControlMemory, s: Situation) -> Dec
 
 def _never_armed(progress: Progress, control: ControlMemory, s: Situation) -> Decision | None:
     """Return that a take-off is called off whose order to arm was under way when it was to be held, and failed."""
-    may_turn = s.autopilot.armed or control.was_armed or is_arming(control.driver, s.monotonic_ns)
-    return None if may_turn or s.autopilot.landed is False else (Event.CALLED_OFF, progress.cause)
+    turns = control.was_armed or may_turn(s.autopilot, control.driver, s.monotonic_ns)
+    return None if turns or s.autopilot.landed is False else (Event.CALLED_OFF, progress.cause)
 
 
 def _on_the_pad(s: Situation, held: Held, config: CompanionConfig) -> Decision | None:

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from companion.autopilots.messages import is_arming
+from companion.autopilots.messages import may_turn
 from companion.config.companion import CompanionConfig
 from companion.core.reasons import Cause, Reason
 from companion.integrity.heights import VEHICLE_M
@@ -97,5 +97,5 @@ def call_off(held: Held, control: ControlMemory, s: Situation, config: Companion
     """
     if not holds(CARRIED_OFF, held, s, config):
         return None
-    may_turn = s.autopilot.armed or is_arming(control.driver, s.monotonic_ns)
-    return Event.CARRIED_OFF if may_turn else Event.CALLED_OFF, cause_of(CARRIED_OFF, s, config)
+    turns = may_turn(s.autopilot, control.driver, s.monotonic_ns)
+    return Event.CARRIED_OFF if turns else Event.CALLED_OFF, cause_of(CARRIED_OFF, s, config)

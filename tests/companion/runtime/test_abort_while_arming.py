@@ -3,7 +3,7 @@
 import pytest
 
 from companion.core.reasons import Reason
-from companion.runtime.start_and_handover import LEAVE_MAX_S, may_turn
+from companion.runtime.start_and_handover import LEAVE_MAX_S, motors_may_turn
 from companion.situation.phases import Phase
 from link.mavlink.dialect import mavlink
 from link.messages import Command
@@ -82,7 +82,7 @@ def test_drone_that_arms_on_the_ground_as_the_companion_ends_is_disarmed_once_it
     orders = {(message.param1, message.param2) for message in setup.autopilot.commands(ARM)[1:]}
     assert orders == {(0.0, 0.0)}  # plain ones
     assert not setup.node.autopilot.state.view.armed
-    assert not may_turn(setup.node)
+    assert not motors_may_turn(setup.node)
 
 
 def test_drone_that_arms_as_the_companion_ends_and_may_fly_is_handed_over_and_not_said_to_be_off() -> None:
@@ -94,4 +94,4 @@ def test_drone_that_arms_as_the_companion_ends_and_may_fly_is_handed_over_and_no
     setup.node.leave()
     setup.run(0.2)
     assert setup.autopilot.custom_mode != OFFBOARD
-    assert may_turn(setup.node)
+    assert motors_may_turn(setup.node)
