@@ -3,7 +3,7 @@
 An element is a straight followed by nothing, a bend, a turn at a junction, or a roundabout; it may have a hump in the
 middle of its straight and has a grade. A bend is a clothoid, an arc and a clothoid. A roundabout, in right-hand
 traffic, is a bend to the right, one to the left about the island and one to the right again.
-The simulated ground is flat at the height at which the drone starts, so a road that would go below it climbs instead.
+A road that would lead below the place where the drone starts climbs instead.
 """
 
 import math

@@ -5,7 +5,7 @@ with d' its rate, is pushed out by `max(0, k d + c d')`: contacts never pull. Fr
 damper from an anchor on that face, bounded by mu times the normal force; at the bound the anchor is dragged along
 (Cundall and Strack 1979), so a drone at rest stays where it is. On a flank friction is viscous below the bound.
 Surfaces are frames (22,): origin 0:3, R_WV 3:12, velocity 12:15, angular velocity in W 15:18, half length, half width,
-height, presence. The ground is such a frame without end, at z = 0, but under the vehicle only the vehicle counts.
+height, presence. The ground is such a frame without end (`ground`), but under the vehicle only the vehicle counts.
 
 With four feet of 2000 N/m the drone sinks 1.8 mm at rest and swings at 73 rad/s; 55 N s/m a foot is critical damping.
 """
@@ -16,6 +16,7 @@ import numpy as np
 
 from link.compiled import kernel
 from sim_autopilot.core.data import Array, Surface
+from sim_autopilot.physics.ground import ground_height
 from sim_autopilot.physics.parameters import Record
 from sim_autopilot.physics.rotation import fill_matrix, fill_turned
 
@@ -165,6 +166,7 @@ def touched_surface(y: Array, rotation: Array, i: int, frame: Array, local: Arra
             add_motion(y, rotation, frame, local)
             return DECK if axis == 2 else SIDE
     localise(y, rotation, CONTACT_POINTS_FLU_M[i], GROUND_FRAME, local)
+    local[2] -= ground_height(y[0], y[1], frame[2])
     if local[2] >= 0.0:
         return NO_SURFACE
     add_motion(y, rotation, GROUND_FRAME, local)

@@ -11,6 +11,7 @@ from link.compiled import kernel
 from sim_autopilot.core.data import Array
 from sim_autopilot.physics.contact import FRAME_SIZE, add_contact, fill_frame, update_anchors
 from sim_autopilot.physics.dynamics import STATE_SIZE, fill_derivative, fill_flight_forces, normalise
+from sim_autopilot.physics.ground import ground_height
 from sim_autopilot.physics.ground_effect import fill_gains
 from sim_autopilot.physics.parameters import Record
 from sim_autopilot.physics.rotation import fill_matrix
@@ -56,7 +57,8 @@ def height_over_roof(y: Array, deck: Array, elapsed_s: float) -> float:
 @kernel
 def nearness(y: Array, deck: Array, elapsed_s: float) -> int:
     """Return whether a surface may touch the drone, only lift it, or is too far for both."""
-    height = min(y[2], height_over_roof(y, deck, elapsed_s))
+    ground_m = ground_height(y[0], y[1], deck[2] + deck[9] * (elapsed_s + deck[17]))
+    height = min(y[2] - ground_m, height_over_roof(y, deck, elapsed_s))
     if height < TOUCH_M:
         return IN_TOUCH
     return IN_GROUND_EFFECT if height < GROUND_EFFECT_M else FAR

@@ -6,6 +6,7 @@ from link.frames.rotations import conjugate, rotate
 from link.mavlink.dialect import Message, mavlink
 from link.messages import Vector3
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
+from sim_autopilot.physics.ground import ground_height
 from sim_autopilot.telemetry.status import boot_ms
 
 
@@ -45,11 +46,12 @@ def _distance_to_surface_m(memory: AutopilotMemory, beam: Vector3) -> float:
         beam: unit vector in W.
     """
     state, deck = memory.plant.state, memory.world.deck
-    ground_m = _along(float(state.position_enu_m[2]), beam[2])
+    east_m, north_m, up_m = (float(one) for one in state.position_enu_m)
     if deck is None:
-        return ground_m
+        return _along(up_m, beam[2])
     age_s = (state.t_ns - deck.t_ns) * 1e-9
     away = state.position_enu_m - deck.position_enu_m - age_s * deck.velocity_enu_m_s
+    ground_m = _along(up_m - ground_height(east_m, north_m, up_m - float(away[2])), beam[2])
     q_VW = conjugate(deck.orientation_wxyz)
     x, y, z = rotate(q_VW, (float(away[0]), float(away[1]), float(away[2])))
     forward, left, up = rotate(q_VW, beam)

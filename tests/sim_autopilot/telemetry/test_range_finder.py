@@ -9,6 +9,7 @@ from link.messages import Quaternion
 from link.records import replace
 from sim_autopilot.core.data import Deck
 from sim_autopilot.core.range_finder import RangeErrors, RangeFinderModel
+from sim_autopilot.physics.ground import ground_height
 from sim_autopilot.telemetry.range_finder import distance_sensor
 from tests.sim_autopilot.pilot import START_NS, Pilot, px4
 
@@ -97,3 +98,12 @@ def test_errors_are_as_large_as_configured_and_the_seeds_own() -> None:
 
 def test_nothing_is_seen_upside_down() -> None:
     assert distance_m(6.0, 120.0, None) == pytest.approx(100.0)
+
+
+def test_ground_beside_a_road_that_leads_down_is_as_low() -> None:
+    low_m, away_m = 20.0, 200.0
+    deck = replace(a_deck(), position_enu_m=np.array([5.0, away_m, -low_m]))
+    expected_m = 6.0 - ground_height(0.0, away_m, -low_m)
+    model = RangeFinderModel(max_m=100.0)
+    assert expected_m > low_m
+    assert distance_m(6.0, 0.0, deck, away_m, model=model) == pytest.approx(expected_m, abs=0.01)

@@ -1,0 +1,73 @@
+"""The ground is flat about the start and goes along with a road that leads down: for forces, range finder and score."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from link.records import replace
+from scenarios.scoring.touch import Box, touches
+from scenarios.scoring.truth_log import truth_log
+from sim_autopilot.core.data import Deck, Surface
+from sim_autopilot.physics.contact import GEAR_HEIGHT_M
+from sim_autopilot.physics.ground import BANK, CUTTING_M, LEVEL_M, ground_height
+from sim_autopilot.plant.config import PlantConfig
+from tests.scenarios.scoring.synthetic import STILL, TIMES_S, body
+from tests.sim_autopilot.flights import at_rest, driving, flown, hovering
+
+CONFIG = PlantConfig()
+FAR_M = 200.0
+"""From the start, where the bank is lower than the road."""
+LOW_M = 20.0
+BOX = Box(roof_size_m=(4.0, 1.8), roof_height_m=1.5, pad_size_m=(1.5, 1.5))
+
+
+def down_there(t_s: float) -> Deck:
+    """A vehicle that stands beside the drone, `LOW_M` below the start."""
+    deck = driving()(t_s)
+    return replace(deck, position_enu_m=np.array([FAR_M + 5.0, 0.0, -LOW_M]))
+
+
+@given(st.floats(-1e4, 1e4), st.floats(-1e4, 1e4), st.floats(-CUTTING_M, 1e3))
+def test_roads_that_do_not_lead_down_leave_the_ground_flat(east_m: float, north_m: float, road_m: float) -> None:
+    assert ground_height(east_m, north_m, road_m) == 0.0
+
+
+@given(st.floats(0.0, LEVEL_M), st.floats(-1e3, 1e3))
+def test_ground_of_the_start_does_not_move(away_m: float, road_m: float) -> None:
+    assert ground_height(away_m, 0.0, road_m) == 0.0
+
+
+@given(st.floats(0.0, 1e4), st.floats(-1e3, 0.0))
+def test_ground_is_never_below_the_road_nor_higher_than_its_cutting_unless_the_bank_is(
+    away_m: float, road_m: float
+) -> None:
+    bank_m = -BANK * max(away_m - LEVEL_M, 0.0)
+    assert road_m <= ground_height(0.0, away_m, road_m) <= max(road_m + CUTTING_M, bank_m)
+
+
+def test_drone_stands_on_the_ground_beside_a_road_that_has_led_down() -> None:
+    ground_m = ground_height(FAR_M, 0.0, -LOW_M)
+    assert ground_m == CUTTING_M - LOW_M
+    stands = at_rest(CONFIG, (FAR_M, 0.0, ground_m + GEAR_HEIGHT_M))
+    flight = flown(CONFIG, stands, lambda _: None, 5.0, deck_at=down_there)
+    assert set(flight.surface) == {Surface.GROUND}
+    assert np.abs(flight.position_m[200:] - flight.position_m[200]).max() < 1e-9
+
+
+@pytest.mark.parametrize("above_m", [0.3, 3.0])
+def test_drone_below_its_start_is_pushed_by_no_ground_that_it_is_above(above_m: float) -> None:
+    high_m = CUTTING_M - LOW_M + GEAR_HEIGHT_M + above_m
+    flight = flown(CONFIG, hovering(CONFIG, (FAR_M, 0.0, high_m)), lambda _: None, 0.1, deck_at=down_there)
+    assert set(flight.surface) == {Surface.NONE}
+    assert np.abs(flight.position_m[:, 2] - high_m).max() < 0.05
+
+
+@pytest.mark.parametrize(("above_m", "touches_it"), [(1.0, False), (-0.2, True)])
+def test_score_counts_the_ground_where_it_is(above_m: float, *, touches_it: bool) -> None:
+    place = (FAR_M, 0.0, CUTTING_M - LOW_M + GEAR_HEIGHT_M + above_m)
+    drone = [body(t_s, place, STILL) for t_s in TIMES_S]
+    vehicle = [body(t_s, (FAR_M + 5.0, 0.0, -LOW_M), STILL) for t_s in TIMES_S]
+    found = touches(truth_log(drone, vehicle, []), BOX)
+    assert found.any.all() == found.any.any() == touches_it
+    assert found.height_m.min() == pytest.approx(above_m)
