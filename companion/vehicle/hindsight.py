@@ -1,8 +1,9 @@
 """How the vehicle has driven, as its data show in hindsight, and how well its speed is known meanwhile; pure.
 
 What is known of a vehicle is as old as its data: 0.1 s over a good link, 0.6 s over a poor one. Each tenth of a second
-is therefore looked back at once the data of that moment are there. A driver
-who changes speed time and again goes on doing so; a departure says nothing of the driver: everybody departs.
+is therefore looked back at once the data of that moment are there. A driver who changes speed time and again goes on
+doing so; a departure says nothing of the driver: everybody departs. A road that has risen and fallen otherwise than
+forecast goes on doing so.
 """
 
 import math
@@ -31,12 +32,15 @@ class Driving(Struct, frozen=True, kw_only=True):
         changes: mean accelerations along, m/s^2, over the 2 s before each of them, oldest first; None over an outage.
         unevenness_m_s2: root mean square of the accelerations along, without a departure that is over.
         departs_for: changes since it has left from rest, None once its speed has grown no more.
+        climbs: squares of how far its velocities upwards were off what had been forecast of them `CLIMB_AHEAD_S`
+            before, in standard deviations of that, oldest first; 1 on the average where these are right.
     """
 
     driven: tuple[Driven, ...] = ()
     changes: tuple[float | None, ...] = ()
     unevenness_m_s2: float = 0.0
     departs_for: int | None = None
+    climbs: tuple[float, ...] = ()
 
 
 def with_velocity(driving: Driving, t_ns: int, velocity_enu_m_s: Array) -> Driving:
@@ -52,7 +56,8 @@ def with_velocity(driving: Driving, t_ns: int, velocity_enu_m_s: Array) -> Drivi
     departs_for = 0 if creeps else None if driving.departs_for is None else driving.departs_for + 1
     if departs_for is not None and not creeps and change is not None and change < _DEPARTED_M_S2:
         changes, departs_for = _without_departure(changes, min(departs_for, len(changes))), None
-    return Driving(
+    return replace(
+        driving,
         driven=driven,
         changes=changes,
         unevenness_m_s2=_root_mean_square([change for change in changes if change is not None]),
@@ -77,18 +82,35 @@ def _root_mean_square(values: list[float]) -> float:
     return math.sqrt(sum([value * value for value in values]) / len(values)) if values else 0.0
 
 
+# A drone follows the pad's climb as it was known so long ago: setpoints and data are late by 0.15 s over a good link,
+# and half of the vertical acceleration is there after another 0.15 s.
+CLIMB_AHEAD_S = 0.5
 _PERIOD_NS = 100_000_000
 _KNOWN_STD_MAX_M_S = 1.0  # of a velocity that is known: in its first second an estimate knows no acceleration
 _LATENESS_MEAN_S = 1.0  # five periods of the slowest receiver
-_AWAITED = 30  # instants: of 3 s, longer than any data are awaited
+_AWAITED = 35  # instants: of 3.5 s, longer than any data are awaited
 _SURE_STD_MAX_M_S = 0.3  # of a velocity that was driven; one fix's is 0.1
+
+
+class Awaited(Struct, frozen=True, kw_only=True):
+    """What was forecast of an instant that the vehicle's data have not reached yet.
+
+    Attributes:
+        t_ns: the instant, UTC.
+        climb_m_s: the vehicle's velocity upwards.
+        climb_std_m_s: its standard deviation.
+    """
+
+    t_ns: int
+    climb_m_s: float
+    climb_std_m_s: float
 
 
 class Hindsight(Struct, frozen=True, kw_only=True):
     """What is looked back at, and what that has shown.
 
     Attributes:
-        awaited_ns: instants, UTC, that the vehicle's data have not reached yet, oldest first.
+        awaited: instants up to `CLIMB_AHEAD_S` ahead, oldest first.
         speed_std_m_s: of the newest of all; infinite while the speed is not known.
         lateness_s: age of the newest fix, a mean of the last second, for between two fixes of a receiver at 5 Hz it
             grows by 0.2 s; None before the first.
@@ -96,7 +118,7 @@ class Hindsight(Struct, frozen=True, kw_only=True):
         driving: how the vehicle has driven up to the instants that have been looked back at.
     """
 
-    awaited_ns: tuple[int, ...] = ()
+    awaited: tuple[Awaited, ...] = ()
     speed_std_m_s: float = math.inf
     lateness_s: float | None = None
     aged_ns: int = 0
@@ -117,21 +139,35 @@ def update_hindsight(
     """
     newest_ns = estimator.newest_fix_ns(memory)
     if newest_ns is None:
-        return replace(hindsight, awaited_ns=(), speed_std_m_s=math.inf)
+        return replace(hindsight, awaited=(), speed_std_m_s=math.inf)
     hindsight = _with_age(hindsight, (t_ns - newest_ns) * 1e-9, monotonic_ns)
-    while hindsight.awaited_ns and hindsight.awaited_ns[0] <= newest_ns:
-        then_ns, *later = hindsight.awaited_ns
-        hindsight = replace(hindsight, awaited_ns=tuple(later))
-        known = estimator.estimate(memory, then_ns)
+    while hindsight.awaited and hindsight.awaited[0].t_ns <= newest_ns:
+        then, *later = hindsight.awaited
+        hindsight = replace(hindsight, awaited=tuple(later))
+        known = estimator.estimate(memory, then.t_ns)
         if known is not None and _std_m_s(known) < _SURE_STD_MAX_M_S:
-            hindsight = replace(hindsight, driving=with_velocity(hindsight.driving, then_ns, known.velocity_enu_m_s))
-    if hindsight.awaited_ns and t_ns - hindsight.awaited_ns[-1] < _PERIOD_NS:
+            hindsight = replace(hindsight, driving=_with_instant(hindsight.driving, then, known))
+    ahead_ns = t_ns + round(CLIMB_AHEAD_S * 1e9)
+    if hindsight.awaited and ahead_ns - hindsight.awaited[-1].t_ns < _PERIOD_NS:
         return hindsight
-    now = estimator.estimate(memory, t_ns)
+    now, ahead = estimator.estimate(memory, t_ns), estimator.estimate(memory, ahead_ns)
     std_m_s = math.inf if now is None else _std_m_s(now)
-    if std_m_s >= _KNOWN_STD_MAX_M_S:
+    if ahead is None or std_m_s >= _KNOWN_STD_MAX_M_S:
         return replace(hindsight, speed_std_m_s=math.inf)
-    return replace(hindsight, awaited_ns=(*hindsight.awaited_ns, t_ns)[-_AWAITED:], speed_std_m_s=std_m_s)
+    awaited = Awaited(t_ns=ahead_ns, climb_m_s=float(ahead.velocity_enu_m_s[2]), climb_std_m_s=climb_std_m_s(ahead))
+    return replace(hindsight, awaited=(*hindsight.awaited, awaited)[-_AWAITED:], speed_std_m_s=std_m_s)
+
+
+def _with_instant(driving: Driving, then: Awaited, known: VehicleEstimate) -> Driving:
+    """Return the driving with an instant that the vehicle's data have reached, newest of all."""
+    off = (float(known.velocity_enu_m_s[2]) - then.climb_m_s) / then.climb_std_m_s
+    driving = replace(driving, climbs=(*driving.climbs, off * off)[-_DRIVEN_KEPT:])
+    return with_velocity(driving, then.t_ns, known.velocity_enu_m_s)
+
+
+def climb_std_m_s(estimate: VehicleEstimate) -> float:
+    """Return the standard deviation of the velocity upwards, which no receiver tells to a millimetre a second."""
+    return math.sqrt(max(float(estimate.covariance[5, 5]), 1e-6))
 
 
 def _with_age(hindsight: Hindsight, age_s: float, monotonic_ns: int) -> Hindsight:
@@ -144,7 +180,7 @@ def _with_age(hindsight: Hindsight, age_s: float, monotonic_ns: int) -> Hindsigh
 
 def forget_instants(hindsight: Hindsight) -> Hindsight:
     """Return the hindsight after UTC was set: the instants have lost their time."""
-    return replace(hindsight, awaited_ns=(), driving=replace(hindsight.driving, driven=(), changes=()))
+    return replace(hindsight, awaited=(), driving=replace(hindsight.driving, driven=(), changes=()))
 
 
 def _std_m_s(estimate: VehicleEstimate) -> float:

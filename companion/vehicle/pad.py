@@ -62,6 +62,7 @@ class PadPath(Struct, frozen=True, kw_only=True, eq=False):
         yaw_rad: heading of the vehicle now, None when unknown.
         yaw_rate_rad_s: (n,) how fast it turns, None when that is unknown.
         position_std_m: (n, 3).
+        climb_std_m_s: (n,) standard deviation of its velocity upwards; None where it is not estimated.
         is_coarse: the vehicle's fixes alone are too coarse to land by, if it sends any: only what the drone sees of the
             pad places it.
         has_one_frame: the vehicle's fixes are in the drone's frame; if not, only what the drone sees tells the offset.
@@ -80,6 +81,7 @@ class PadPath(Struct, frozen=True, kw_only=True, eq=False):
     acceleration_enu_m_s2: Array
     yaw_rad: float | None
     position_std_m: Array
+    climb_std_m_s: Array | None = None
     is_coarse: bool = False
     has_one_frame: bool = True
     yaw_rate_rad_s: Array | None = None
@@ -136,6 +138,7 @@ def pad_path(
         yaw_rad=None if forecast.yaw_rad is None else float(forecast.yaw_rad[0]),
         yaw_rate_rad_s=_yaw_rate_rad_s(forecast),
         position_std_m=forecast.position_std_m,
+        climb_std_m_s=forecast.climb_std_m_s,
         is_coarse=forecast.is_coarse,
         has_one_frame=has_one_frame,
         half_width_m=math.inf if pad is None else 0.5 * min(pad.size_m),

@@ -28,7 +28,6 @@ class PadSwing(Struct, frozen=True, kw_only=True, eq=False):
     Attributes:
         slope: (n, 2) of the deck by its swing, height per length in W.
         shake_enu: (3, n, 2) place, velocity and acceleration of the horizontal swing that is not followed.
-        climb_std_m_s: (n,) standard deviation of the pad's velocity upwards.
         tilt_std_rad: (n, 4) standard deviations of roll, its rate, rad/s, pitch and its rate.
         above_m: height of the pad over the axis about which the deck tilts.
         heave_rad_s: angular frequency of the heave.
@@ -36,7 +35,6 @@ class PadSwing(Struct, frozen=True, kw_only=True, eq=False):
 
     slope: Array
     shake_enu: Array
-    climb_std_m_s: Array
     tilt_std_rad: Array
     above_m: float
     heave_rad_s: float
@@ -57,7 +55,6 @@ def swing_of(forecast: Forecast, above_m: float) -> PadSwing | None:
     return PadSwing(
         slope=slope,
         shake_enu=shake_enu,
-        climb_std_m_s=np.zeros(len(slope)) if forecast.climb_std_m_s is None else forecast.climb_std_m_s,
         tilt_std_rad=np.zeros((len(slope), 4)) if forecast.tilt_std_rad is None else forecast.tilt_std_rad,
         above_m=above_m,
         heave_rad_s=heave[0],

@@ -15,7 +15,7 @@ from companion.forecast.samples import Descent, Samples
 from companion.landing.decisions.waiting import is_moment_quiet
 from companion.landing.state.memory import ForecastMemory, StepMemory
 from companion.landing.state.step_data import StepInputs, System
-from companion.landing.touchdown.rollout_errors import as_driven, draw_deck, draw_errors, relearns_hz
+from companion.landing.touchdown.rollout_errors import as_driven, climbs_m_s, draw_deck, draw_errors, relearns_hz
 from companion.landing.touchdown.rollout_inputs import (
     course_of,
     deviation_now,
@@ -108,12 +108,13 @@ def forecast_contact(
     numbers = draws()
     stands = vehicle_stands(situation, config.chase)
     deviates = inputs.response.covariance_in(memory.forecast.gusts.push_std_m_s2)
-    errors = draw_errors(then, pad, deviates, numbers)
+    driving = memory.vehicle.hindsight.driving
+    errors = draw_errors(then, pad, climbs_m_s(then, pad, driving), deviates, numbers)
     deck = draw_deck(pad, way_down.contact_s, numbers.tilts)
     late_s = memory.vehicle.hindsight.lateness_s or age_s
     jitter_s = inputs.link_delay.std_s * errors.late
     delay_s = late_s + 0.5 / config.setpoints.rate_hz + inputs.link_delay.mean_s + jitter_s
-    vehicle = as_driven(errors.vehicle, memory.vehicle.hindsight.driving, course.direction[0], stands=stands)
+    vehicle = as_driven(errors.vehicle, driving, course.direction[0], stands=stands)
     error_std_m_s = math.sqrt(float(np.mean(np.square(vehicle[:, 1]))))
     drone = follower_of(memory, situation, inputs, config, relearns_hz=relearns_hz(then), error_std_m_s=error_std_m_s)
     events = make_events(

@@ -8,7 +8,7 @@ from msgspec import Struct
 from companion.autopilots.response import STATES
 from companion.core.data import Array, Mixture, VehicleEstimate
 from companion.forecast.draws import MODE, Draws
-from companion.vehicle.hindsight import Driving
+from companion.vehicle.hindsight import CLIMB_AHEAD_S, Driving, climb_std_m_s
 from companion.vehicle.pad import PadPath
 from companion.vehicle.pad_reach import frames_apart_m2
 
@@ -17,9 +17,6 @@ _CHANGE_S = 0.1  # between two changes of speed that `Driving` keeps
 _PRIOR_DRIVEN_S = 2.0  # what the estimator believes of drivers counts as one such change, which is over 2 s
 _OWN_HEIGHT_STD_M = 0.05  # of the drone's height beside the vehicle's: receivers with corrections, or a range finder
 _OWN_CLIMB_STD_M_S = 0.07  # of its rate, gusts included: 208 contacts in worlds sank by 0.06 m/s other than forecast
-# What a deck's velocity turns out to be sooner than this before the contact the drone makes up for: setpoints and data
-# are late by 0.15 s, and half of the vertical acceleration is there after another 0.15 s.
-_CLIMB_FOLLOWED_S = 0.5
 
 
 class Errors(Struct, frozen=True, kw_only=True, eq=False):
@@ -38,25 +35,41 @@ class Errors(Struct, frozen=True, kw_only=True, eq=False):
     late: Array
 
 
-def draw_errors(then: VehicleEstimate, pad: PadPath, deviates: Array, numbers: Draws) -> Errors:
+def draw_errors(then: VehicleEstimate, pad: PadPath, climbs_m_s: float, deviates: Array, numbers: Draws) -> Errors:
     """Return what may be wrong.
 
     Args:
         then: the vehicle at its newest datum.
         pad: now; where its place is known less well than the antenna's, that is the heading's.
+        climbs_m_s: standard deviation of the pad's velocity upwards at the contact.
         deviates: (4, 4) covariance of how the drone deviates from its path.
         numbers: random ones.
     """
     normals = numbers.normals
     vehicle = _draw_vehicle(then, pad, normals[:, :9], numbers.uniforms[:, MODE])
-    heaves_m_s = 0.0 if pad.swing is None else np.interp(_CLIMB_FOLLOWED_S, pad.offset_s, pad.swing.climb_std_m_s)
-    own = normals[:, 17:19] * np.array([_OWN_HEIGHT_STD_M, math.hypot(_OWN_CLIMB_STD_M_S, heaves_m_s)])
+    own = normals[:, 17:19] * np.array([_OWN_HEIGHT_STD_M, math.hypot(_OWN_CLIMB_STD_M_S, climbs_m_s)])
     return Errors(
         vehicle=np.ascontiguousarray(vehicle.reshape(-1, 3, 3)[:, :, :2]),
         deviation=np.einsum("ij,njk->nik", _root(deviates), normals[:, 9:17].reshape(-1, STATES, 2)),
-        vertical=own - np.column_stack([vehicle[:, 2], -vehicle[:, 5]]),
+        vertical=own - np.column_stack([vehicle[:, 2], np.zeros(len(vehicle))]),
         late=normals[:, 19],
     )
+
+
+def climbs_m_s(then: VehicleEstimate, pad: PadPath, driving: Driving) -> float:
+    """Return the standard deviation of the pad's velocity upwards at a contact, as far as the drone does not follow it.
+
+    What the estimator believes of roads and decks counts as `_PRIOR_DRIVEN_S` of what this one has shown.
+
+    Args:
+        then: the vehicle at its newest datum.
+        pad: from now on.
+        driving: the last 15 s.
+    """
+    stated = pad.climb_std_m_s
+    believed_m_s = climb_std_m_s(then) if stated is None else float(np.interp(CLIMB_AHEAD_S, pad.offset_s, stated))
+    squares = _PRIOR_DRIVEN_S + _CHANGE_S * sum(driving.climbs)
+    return believed_m_s * math.sqrt(squares / (_PRIOR_DRIVEN_S + _CHANGE_S * len(driving.climbs)))
 
 
 def draw_deck(pad: PadPath, contact_s: float, normals: Array) -> Array:

@@ -34,7 +34,7 @@ def _drawn(mixture: Mixture | None, covariance: Array, pad_std_m: float = 0.01) 
     """Places, velocities and accelerations of the samples, (n, 3, 2)."""
     then = _estimate(covariance, mixture)
     response = ResponseModel(next(iter(CASCADES.values())), OFFSET_S)
-    return draw_errors(then, pad_at(std_m=pad_std_m), response.covariance, draws()).vehicle
+    return draw_errors(then, pad_at(std_m=pad_std_m), 0.0, response.covariance, draws()).vehicle
 
 
 def test_model_that_is_hardly_likely_moves_few_samples_and_leaves_the_others_alone() -> None:
@@ -89,5 +89,5 @@ def test_frames_that_are_one_are_apart_by_what_receivers_differ_until_sightings_
     covariance, apart_m = CALM.copy(), 0.5
     covariance[:2, :2] = np.eye(2) * apart_m**2
     pad = replace(pad_at(), frame_offset=FrameOffset(std_m=apart_m, is_confirmed=is_confirmed))
-    place = draw_errors(_estimate(covariance), pad, np.zeros((STATES, STATES)), draws()).vehicle[:, 0]
+    place = draw_errors(_estimate(covariance), pad, 0.0, np.zeros((STATES, STATES)), draws()).vehicle[:, 0]
     assert place.std(axis=0) == pytest.approx(np.full(2, std_m), rel=0.15)

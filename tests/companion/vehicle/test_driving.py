@@ -11,7 +11,15 @@ import pytest
 from companion.config.estimation import EstimatorKind
 from companion.core.data import VehicleEstimate
 from companion.vehicle.estimator import EstimatorMemory
-from companion.vehicle.hindsight import Driving, Hindsight, forget_instants, update_hindsight, with_velocity
+from companion.vehicle.hindsight import (
+    CLIMB_AHEAD_S,
+    Awaited,
+    Driving,
+    Hindsight,
+    forget_instants,
+    update_hindsight,
+    with_velocity,
+)
 from link.records import replace
 from tests.companion.facts import NOW_NS
 from tests.companion.vehicle.drives import Drive, circle, random_drive, straight
@@ -21,6 +29,8 @@ from tests.companion.world import PAD_HEIGHT_M, Flight, KnownVehicle
 
 EVEN_M_S2 = 0.2  # of an even driver over late data
 PERIOD_NS = 100_000_000
+AHEAD_NS = round(CLIMB_AHEAD_S * 1e9)
+AWAITED = Awaited(t_ns=NOW_NS, climb_m_s=0.0, climb_std_m_s=0.1)
 
 
 def driven(speed_m_s: Callable[[float], float], until_s: float) -> Driving:
@@ -94,9 +104,9 @@ def test_uneven_driving_is_told_from_the_last_seconds_only() -> None:
 def test_speeds_before_and_after_an_outage_are_not_compared() -> None:
     hindsight, t_ns = Hindsight(), NOW_NS
     for speed_m_s in (1.0, 9.0):
-        for _ in range(22):
+        for _ in range(26):
             hindsight, t_ns = looked_back(hindsight, speed_m_s, t_ns), t_ns + PERIOD_NS
-        t_ns, hindsight = t_ns + 100 * PERIOD_NS, replace(hindsight, awaited_ns=())
+        t_ns, hindsight = t_ns + 100 * PERIOD_NS, replace(hindsight, awaited=())
     assert len(hindsight.driving.driven) == 42
     assert hindsight.driving.unevenness_m_s2 == 0.0
 
@@ -105,16 +115,14 @@ def test_speeds_before_and_after_an_outage_are_not_compared() -> None:
 def test_what_is_hardly_known_is_not_taken_for_driven(variance_m2_s2: float) -> None:
     is_sure = variance_m2_s2 < 0.09
     told: Any = Told(5.0, variance_m2_s2)
-    found = update_hindsight(
-        Hindsight(awaited_ns=(NOW_NS,)), told, EstimatorMemory(NOW_NS), NOW_NS, monotonic_ns=NOW_NS
-    )
+    found = update_hindsight(Hindsight(awaited=(AWAITED,)), told, EstimatorMemory(NOW_NS), NOW_NS, monotonic_ns=NOW_NS)
     assert len(found.driving.driven) == is_sure
-    assert found.awaited_ns == (NOW_NS,)  # of now
+    assert [one.t_ns for one in found.awaited] == [NOW_NS + AHEAD_NS]
 
 
 def test_what_is_awaited_ends_with_the_estimate() -> None:
     driving = Driving(unevenness_m_s2=0.5)
-    hindsight = Hindsight(awaited_ns=(NOW_NS,), speed_std_m_s=0.1, driving=driving)
+    hindsight = Hindsight(awaited=(AWAITED,), speed_std_m_s=0.1, driving=driving)
     found = update_hindsight(hindsight, estimator(EstimatorKind.IMM), None, NOW_NS, monotonic_ns=NOW_NS)
     assert found == Hindsight(driving=driving)
 
@@ -133,7 +141,7 @@ def test_speed_is_as_uncertain_as_it_is_told_and_unknown_once_it_is_lost(varianc
 
 def test_how_a_vehicle_has_driven_outlasts_a_clock_that_is_set() -> None:
     hindsight = Hindsight(
-        awaited_ns=(NOW_NS,),
+        awaited=(AWAITED,),
         speed_std_m_s=0.1,
         driving=Driving(driven=((NOW_NS, 3.0, 4.0),), changes=(0.5,), unevenness_m_s2=0.5),
     )
@@ -153,7 +161,7 @@ def test_step_looks_back_once_the_data_are_there() -> None:
     flight = Flight(vehicle=SureVehicle((-20.0, 0.4, PAD_HEIGHT_M), (4.0, 0.0, 0.0)))
     flight.run(0.1)
     flight.sends_fixes = False
-    flight.run(0.5)
+    flight.run(1.0)
     before = len(flight.memory.vehicle.hindsight.driving.driven)
     flight.sends_fixes = True
     flight.run(0.1)

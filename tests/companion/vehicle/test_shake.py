@@ -28,7 +28,6 @@ def swinging(roll_rad_s: float, pitch_rad_s: float) -> Forecast:
         position_std_m=at_rest,
         tilt_rad=np.column_stack([*swing(roll_rad_s, 0.05, offset_s), *swing(pitch_rad_s, 0.03, offset_s)]),
         swing=np.array([[1.0, 0.1], [roll_rad_s, 0.0], [pitch_rad_s, 0.0]]),
-        climb_std_m_s=np.full(len(offset_s), 0.1),
     )
 
 

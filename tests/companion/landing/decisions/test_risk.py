@@ -20,7 +20,6 @@ WAITING_M = DESCENT.wait.height_m
 SWINGING = PadSwing(
     slope=np.zeros((5, 2)),
     shake_enu=np.zeros((3, 5, 2)),
-    climb_std_m_s=np.zeros(5),
     tilt_std_rad=np.zeros((5, 4)),
     above_m=1.5,
     heave_rad_s=0.6,

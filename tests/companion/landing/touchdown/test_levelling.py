@@ -117,7 +117,6 @@ def _tilting(slope: Array) -> PadSwing:
     return PadSwing(
         slope=slope,
         shake_enu=np.zeros((3, n, 2)),
-        climb_std_m_s=np.zeros(n),
         tilt_std_rad=np.zeros((n, 4)),
         above_m=1.5,
         heave_rad_s=6.0,

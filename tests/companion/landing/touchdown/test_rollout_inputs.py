@@ -53,7 +53,6 @@ def test_swing_tilts_the_deck_beside_the_road() -> None:
     swing = PadSwing(
         slope=np.tile([0.0, 0.05], (n, 1)),
         shake_enu=shake,
-        climb_std_m_s=np.zeros(n),
         tilt_std_rad=np.zeros((n, 4)),
         above_m=1.5,
         heave_rad_s=1.0,
@@ -76,7 +75,6 @@ def test_deck_that_tilts_otherwise_is_off_by_what_the_tilt_makes_of_it(
     swing = PadSwing(
         slope=np.zeros((n, 2)),
         shake_enu=np.zeros((3, n, 2)),
-        climb_std_m_s=np.zeros(n),
         tilt_std_rad=np.outer([0.0, 1.0, 2.0], np.abs(tilt)),
         above_m=above_m,
         heave_rad_s=1.0,
