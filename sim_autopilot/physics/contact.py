@@ -166,7 +166,7 @@ def touched_surface(y: Array, rotation: Array, i: int, frame: Array, local: Arra
             add_motion(y, rotation, frame, local)
             return DECK if axis == 2 else SIDE
     localise(y, rotation, CONTACT_POINTS_FLU_M[i], GROUND_FRAME, local)
-    local[2] -= ground_height(y[0], y[1], frame[2])
+    local[2] -= ground_height(y[0], y[1], frame[0], frame[1], frame[2])
     if local[2] >= 0.0:
         return NO_SURFACE
     add_motion(y, rotation, GROUND_FRAME, local)

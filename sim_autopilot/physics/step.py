@@ -57,7 +57,10 @@ def height_over_roof(y: Array, deck: Array, elapsed_s: float) -> float:
 @kernel
 def nearness(y: Array, deck: Array, elapsed_s: float) -> int:
     """Return whether a surface may touch the drone, only lift it, or is too far for both."""
-    ground_m = ground_height(y[0], y[1], deck[2] + deck[9] * (elapsed_s + deck[17]))
+    ahead = elapsed_s + deck[17]
+    ground_m = ground_height(
+        y[0], y[1], deck[0] + deck[7] * ahead, deck[1] + deck[8] * ahead, deck[2] + deck[9] * ahead
+    )
     height = min(y[2] - ground_m, height_over_roof(y, deck, elapsed_s))
     if height < TOUCH_M:
         return IN_TOUCH

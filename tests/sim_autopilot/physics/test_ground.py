@@ -1,4 +1,4 @@
-"""The ground is flat about the start and goes along with a road that leads down: for forces, range finder and score."""
+"""The ground goes along with a road that leads down: for forces, range finder and score."""
 
 import numpy as np
 import pytest
@@ -10,14 +10,14 @@ from scenarios.scoring.touch import Box, touches
 from scenarios.scoring.truth_log import truth_log
 from sim_autopilot.core.data import Deck, Surface
 from sim_autopilot.physics.contact import GEAR_HEIGHT_M
-from sim_autopilot.physics.ground import BANK, CUTTING_M, LEVEL_M, ground_height
+from sim_autopilot.physics.ground import CUTTING_M, PASSES_M, START_M, ground_height
 from sim_autopilot.plant.config import PlantConfig
 from tests.scenarios.scoring.synthetic import STILL, TIMES_S, body
 from tests.sim_autopilot.flights import at_rest, driving, flown, hovering
 
 CONFIG = PlantConfig()
 FAR_M = 200.0
-"""From the start, where the bank is lower than the road."""
+"""From the start."""
 LOW_M = 20.0
 BOX = Box(roof_size_m=(4.0, 1.8), roof_height_m=1.5, pad_size_m=(1.5, 1.5))
 
@@ -28,26 +28,30 @@ def down_there(t_s: float) -> Deck:
     return replace(deck, position_enu_m=np.array([FAR_M + 5.0, 0.0, -LOW_M]))
 
 
-@given(st.floats(-1e4, 1e4), st.floats(-1e4, 1e4), st.floats(-CUTTING_M, 1e3))
-def test_roads_that_do_not_lead_down_leave_the_ground_flat(east_m: float, north_m: float, road_m: float) -> None:
-    assert ground_height(east_m, north_m, road_m) == 0.0
+PLACES = st.tuples(*4 * [st.floats(-1e4, 1e4)])
 
 
-@given(st.floats(0.0, LEVEL_M), st.floats(-1e3, 1e3))
-def test_ground_of_the_start_does_not_move(away_m: float, road_m: float) -> None:
-    assert ground_height(away_m, 0.0, road_m) == 0.0
-
-
-@given(st.floats(0.0, 1e4), st.floats(-1e3, 0.0))
-def test_ground_is_never_below_the_road_nor_higher_than_its_cutting_unless_the_bank_is(
-    away_m: float, road_m: float
+@given(PLACES, st.floats(-CUTTING_M, 1e3))
+def test_roads_that_do_not_lead_down_leave_the_ground_flat(
+    places: tuple[float, float, float, float], road_m: float
 ) -> None:
-    bank_m = -BANK * max(away_m - LEVEL_M, 0.0)
-    assert road_m <= ground_height(0.0, away_m, road_m) <= max(road_m + CUTTING_M, bank_m)
+    assert ground_height(*places, road_m) == 0.0
+
+
+@given(PLACES, st.floats(-1e3, 0.0))
+def test_ground_is_in_a_cutting_above_the_road_but_where_the_drone_starts(
+    places: tuple[float, float, float, float], road_m: float
+) -> None:
+    assert ground_height(*places, road_m) in {0.0, road_m + CUTTING_M}
+
+
+def test_ground_of_the_start_stays_until_the_road_leads_through_there() -> None:
+    assert ground_height(0.5 * START_M, 0.0, 2.0 * PASSES_M, 0.0, -LOW_M) == 0.0
+    assert ground_height(0.5 * START_M, 0.0, 0.5 * PASSES_M, 0.0, -LOW_M) == CUTTING_M - LOW_M
 
 
 def test_drone_stands_on_the_ground_beside_a_road_that_has_led_down() -> None:
-    ground_m = ground_height(FAR_M, 0.0, -LOW_M)
+    ground_m = ground_height(FAR_M, 0.0, FAR_M + 5.0, 0.0, -LOW_M)
     assert ground_m == CUTTING_M - LOW_M
     stands = at_rest(CONFIG, (FAR_M, 0.0, ground_m + GEAR_HEIGHT_M))
     flight = flown(CONFIG, stands, lambda _: None, 5.0, deck_at=down_there)

@@ -103,7 +103,7 @@ def test_nothing_is_seen_upside_down() -> None:
 def test_ground_beside_a_road_that_leads_down_is_as_low() -> None:
     low_m, away_m = 20.0, 200.0
     deck = replace(a_deck(), position_enu_m=np.array([5.0, away_m, -low_m]))
-    expected_m = 6.0 - ground_height(0.0, away_m, -low_m)
+    expected_m = 6.0 - ground_height(0.0, away_m, 5.0, away_m, -low_m)
     model = RangeFinderModel(max_m=100.0)
     assert expected_m > low_m
     assert distance_m(6.0, 0.0, deck, away_m, model=model) == pytest.approx(expected_m, abs=0.01)
