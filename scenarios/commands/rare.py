@@ -53,8 +53,12 @@ def rare_command(
     refuse_variables()
     subject = subject_of(name, firmware)
     settings = Settings(particles=particles, steps=steps, in_time=True, least=level, seed=seed)
-    with flying(subject, core_count() if workers is None else workers) as fly:
-        population = split(settings, fly, lambda population: _note(level_line(population)))
+    try:
+        with flying(subject, core_count() if workers is None else workers) as fly:
+            population = split(settings, fly, lambda population: _note(level_line(population)))
+    except KeyboardInterrupt:
+        _note("broken off: a splitting that is not over tells no probability, and nothing of it is kept")
+        raise
     table = report(subject.name, settings, population)
     if as_json:
         sys.stdout.write(json.dumps(table, indent=2, allow_nan=False) + "\n")

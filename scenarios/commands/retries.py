@@ -2,7 +2,7 @@
 
 import json
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import closing
 from statistics import median
 from typing import TYPE_CHECKING, Annotated, Any
@@ -16,7 +16,7 @@ from scenarios.commands.options import LANDINGS_MAX, FirstSeedOption, OneFirmwar
 
 if TYPE_CHECKING:
     from scenarios.config import FirmwareName
-    from scenarios.faults.retry import Retried
+    from scenarios.faults.retry import Retried, RetryCase
 
 _SCENARIOS = (
     "straight_5+sensors=nominal+wind=nominal+link=nominal",
@@ -76,36 +76,54 @@ def retries_command(
     for name in names or ():
         load_scenario(with_firmware(name, firmwares[0]))  # tells what is wrong with it before anything is flown
     drawn = range(first_seed, first_seed + seeds)
-    rows = [_row(group) for group in _fly(names or _SCENARIOS, firmwares, height or _HEIGHTS_M, drawn, workers)]
-    if as_json:
-        sys.stdout.write(json.dumps({"groups": rows}, indent=2) + "\n")
-    else:
-        sys.stdout.writelines(_lines(rows))
+    groups = _groups(names or _SCENARIOS, firmwares, height or _HEIGHTS_M, drawn)
+    found: dict[RetryCase, Retried] = {}
+    try:
+        _fly(groups, found, workers)
+    except KeyboardInterrupt:
+        sys.stderr.write(f"broken off: {len(found)} of {sum(map(len, groups))} descents are flown\n")
+        _write(groups, found, as_json=as_json)
+        raise
+    rows = _write(groups, found, as_json=as_json)
     return 0 if all(row["right"] for row in rows) else 1
 
 
-def _fly(
-    names: Sequence[str],
-    firmwares: Sequence["FirmwareName"],
-    heights_m: Sequence[float],
-    seeds: Sequence[int],
-    workers: int | None,
-) -> list[list["Retried"]]:
-    """Break off each descent at each height, and return what came of it by scenario, firmware and height."""
-    from scenarios.faults.retry import RetryCase, fly_retry, lost
-    from scenarios.processes.local_workers import LocalWorkers, core_count
-    from scenarios.processes.pool import run_tasks
+def _groups(
+    names: Sequence[str], firmwares: Sequence["FirmwareName"], heights_m: Sequence[float], seeds: Sequence[int]
+) -> "list[list[RetryCase]]":
+    """Return the descents to be broken off, by scenario, firmware and height."""
+    from scenarios.faults.retry import RetryCase
 
-    groups = [
+    return [
         [RetryCase(scenario=name, firmware=firmware, height_m=height_m, seed=seed) for seed in seeds]
         for name in names
         for firmware in firmwares
         for height_m in heights_m
     ]
+
+
+def _fly(groups: "Sequence[Sequence[RetryCase]]", found: "dict[RetryCase, Retried]", workers: int | None) -> None:
+    """Break off each descent, and put down in `found` what came of it."""
+    from scenarios.faults.retry import fly_retry, lost
+    from scenarios.processes.local_workers import LocalWorkers, core_count
+    from scenarios.processes.pool import run_tasks
+
     fliers = LocalWorkers(fly_retry, workers or core_count())
     with closing(run_tasks(fliers, [case for group in groups for case in group], lost=lost)) as results:
-        found = {retried.case: retried for retried in results}
-    return [[found[case] for case in group] for group in groups]
+        found.update((retried.case, retried) for retried in results)
+
+
+def _write(
+    groups: "Sequence[Sequence[RetryCase]]", found: "Mapping[RetryCase, Retried]", *, as_json: bool
+) -> list[dict[str, Any]]:
+    """Write the figures of the groups of which something is flown, and return them."""
+    flown = [[found[case] for case in group if case in found] for group in groups]
+    rows = [_row(group) for group in flown if group]
+    if as_json:
+        sys.stdout.write(json.dumps({"groups": rows}, indent=2) + "\n")
+    else:
+        sys.stdout.writelines(_lines(rows))
+    return rows
 
 
 def _row(group: "Sequence[Retried]") -> dict[str, Any]:

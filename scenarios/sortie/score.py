@@ -34,7 +34,7 @@ class SortieScore:
     Attributes:
         ended: the phase that it ended in.
         reason: what the companion said last.
-        contacts: samples of 10 ms with a contact between lift-off and descent.
+        contacts: samples of 10 ms with a contact between lift-off and descent; None where nothing was flown.
         error_straight_m: of the station, RMS; None without such a time.
         error_bend_m: likewise.
         error_max_m: the largest, of both.
@@ -51,7 +51,7 @@ class SortieScore:
 
     ended: str
     reason: str
-    contacts: int
+    contacts: int | None
     error_straight_m: float | None
     error_bend_m: float | None
     error_max_m: float | None

@@ -75,7 +75,7 @@ def lost_sortie(task: SortieTask, why: str) -> FlownSortie:
     score = SortieScore(
         ended="",
         reason=why,
-        contacts=0,
+        contacts=None,
         error_straight_m=None,
         error_bend_m=None,
         error_max_m=None,

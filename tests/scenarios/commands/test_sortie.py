@@ -29,5 +29,7 @@ def test_sorties_that_are_flown_are_told_when_the_others_are_broken_off(
     monkeypatch.setattr(pool, "run_tasks", broken_off_after_two)
     assert run_app("scenarios", app, ["sortie", "straight_10", "--seeds", "5", "--json"]) == EXIT_INTERRUPTED
     printed = capsys.readouterr()
-    assert [row["seed"] for row in json.loads(printed.out)["sorties"]] == [1, 2]
+    table = json.loads(printed.out)
+    assert [row["seed"] for row in table["sorties"]] == [1, 2]
     assert printed.err == "broken off: 2 of 5 sorties are flown\n"
+    assert table["total"]["without a contact after lift-off"] == 0  # neither was flown
