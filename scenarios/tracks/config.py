@@ -9,7 +9,7 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from link.program.toml_config import Ascending, NotNegative, Positive, StrictModel
-from scenarios.tracks.drive_config import Departure, DriveTrack, VesselTrack, Waypoint
+from scenarios.tracks.drive_config import Departure, DriveTrack, Speed, VesselTrack, Waypoint
 
 
 class StaticTrack(StrictModel):
@@ -49,7 +49,7 @@ class MovingTrack(StrictModel):
     """What all tracks share that pass the waiting point at speed."""
 
     departure: Departure = Departure()
-    speed_m_s: Annotated[float, Field(gt=0.0, le=60.0)]
+    speed_m_s: Speed
     acceleration_m_s2: Positive = 2.0
     braking_m_s2: Positive = 3.0
     approach_min_m: Positive = 40.0  # of road before the waiting point
@@ -128,7 +128,7 @@ class RandomTrack(MovingTrack):
 class ShakeConfig(StrictModel):
     """How a road shakes the vehicle: waves of heave, roll and pitch."""
 
-    heave_m: NotNegative = 0.1
+    heave_m: Annotated[float, Field(ge=0.0, le=0.5)] = 0.1  # no suspension travels farther
     heave_hz: Positive = 0.5
     roll_rad: Annotated[float, Field(ge=0.0, le=0.5)] = 0.0524  # 3 degrees
     roll_hz: Positive = 1.0

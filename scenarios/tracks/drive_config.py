@@ -14,6 +14,10 @@ SHIFT_CURVATURE = 8.0
 _CURVATURE_MAX_PER_M = 10.0  # beyond it a vehicle turns on the spot
 Curvature = Annotated[float, Field(ge=-_CURVATURE_MAX_PER_M, le=_CURVATURE_MAX_PER_M)]
 """1/m, positive to the left."""
+_SPEED_MAX_M_S = 60.0  # 216 km/h
+Speed = Annotated[float, Field(gt=0.0, le=_SPEED_MAX_M_S)]
+Grade = Annotated[float, Field(ge=-0.35, le=0.35)]
+"""No street is steeper than Baldwin Street in Dunedin, 0.348."""
 
 
 class Departure(StrictModel):
@@ -65,7 +69,7 @@ class DriveTrack(StrictModel):
     stretches: Annotated[tuple[tuple[Positive, Curvature, Curvature], ...], Field(min_length=1)]
     # Lane changes and swerves: place (m), length (m), and how far to the left (m).
     shifts: tuple[tuple[NotNegative, Positive, float], ...] = ()
-    grades: tuple[tuple[NotNegative, float], ...] = ()  # place (m) and grade; between two places it changes evenly
+    grades: tuple[tuple[NotNegative, Grade], ...] = ()  # place (m) and grade; between two places it changes evenly
     humps: tuple[tuple[NotNegative, Positive, NotNegative], ...] = ()  # place of the middle (m), length (m), height (m)
     # Roughness as plane waves: amplitude (m), wavelength along the road (m), its ratio to that across, phase (rad).
     waves: tuple[tuple[NotNegative, Positive, float, float], ...] = ()
@@ -88,19 +92,21 @@ class DriveTrack(StrictModel):
         return self
 
     @model_validator(mode="after")
-    def _drives_forwards(self) -> Self:
+    def _drives_forwards_and_no_faster_than_vehicles_do(self) -> Self:
         speed_m_s = 0.0
         for place, (duration_s, acceleration_m_s2) in enumerate(self.legs):
             speed_m_s += duration_s * acceleration_m_s2
             if speed_m_s < -_SPEED_ROUNDING_M_S:
                 raise ValueError(f"legs[{place}] ends in reverse, at {speed_m_s:.3g} m/s")
+            if speed_m_s > _SPEED_MAX_M_S:
+                raise ValueError(f"legs[{place}] ends at {speed_m_s:.3g} m/s; {_SPEED_MAX_M_S:g} m/s are the most")
         return self
 
 
 class HullConfig(StrictModel):
     """A ship's hull; that of DTMB 5415, a destroyer whose model many towing tanks have measured (ITTC, SIMMAN 2008)."""
 
-    length_m: Positive = 142.0
+    length_m: Annotated[float, Field(ge=1.0, le=500.0)] = 142.0  # from a dinghy's to the longest ship's
     breadth_m: Positive = 19.06
     draught_m: Positive = 6.15
     block_coefficient: Annotated[float, Field(gt=0.0, le=1.0)] = 0.507
@@ -117,7 +123,7 @@ class VesselTrack(StrictModel):
     departure: Departure = Departure()
     significant_height_m: Positive
     modal_period_s: Positive
-    speed_range_m_s: Annotated[tuple[Positive, Positive], Ascending] = (1.0, 8.0)  # drawn for each seed
+    speed_range_m_s: Annotated[tuple[Speed, Speed], Ascending] = (1.0, 8.0)  # drawn for each seed
     off_bow_max_rad: Annotated[float, Field(ge=0.0, le=1.5708)] = 0.7854  # where waves come from, drawn; 45 degrees
     deck_forward_m: float = -57.0  # of amidships; the flight deck of DTMB 5415's class is right aft
     acceleration_m_s2: Positive = 0.5

@@ -158,6 +158,8 @@ def test_drive_keeps_to_its_legs_and_its_bend() -> None:
         ({"grades": [[5.0, 0.0], [5.0, 0.1]]}, "grades[1] must be behind grades[0]"),
         ({"legs": [[5.0, 1.0], [6.0, -1.0]]}, "legs[1] ends in reverse"),
         ({"legs": [[-5.0, 1.0]]}, "legs[0][0]"),
+        ({"legs": [[10_000.0, 1.0]]}, "legs[0] ends at 1e+04 m/s"),
+        ({"grades": [[5.0, 2.0]]}, "grades[0][1]"),
         ({"shifts": [[5.0, 1e-6, 3.0]]}, "shifts[0] is too short for 3 m to the side"),
         ({"stretches": [[10.0, 1e9, 0.0]]}, "stretches[0][1]"),
     ],
