@@ -1,7 +1,8 @@
 """A recording as the view shows it: its states, 20 a second, and where among them the playback is."""
 
+import heapq
 from bisect import bisect_right
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -16,6 +17,7 @@ from link.program.toml_config import parse_toml, validate
 from link.recording.file_names import EYES_STEM
 from link.recording.mcap_reader import Recorded, read_head, read_messages, recording_files
 from link.records import replace
+from link.units import NS_PER_S
 from link.zenoh.keys import Keys
 from scenarios.config import Scenario
 from scenarios.recordings.truth_file import STEM as TRUTH
@@ -117,12 +119,12 @@ def _road(truth: list[Path]) -> Road | None:
     return Road(scenario=validate(Scenario, table, source="scenario.toml"), seed=head.number("seed"))
 
 
-def _merge(*recordings: list[Path]) -> list[Recorded]:
-    messages = [message for files in recordings for message in read_messages(files)]
-    return sorted(messages, key=lambda recorded: recorded.log_ns)
+def _merge(*recordings: list[Path]) -> Iterator[Recorded]:
+    """Return the messages in the order of their times, read as they are asked for: an hour of them is 1 GB."""
+    return heapq.merge(*map(read_messages, recordings), key=lambda recorded: recorded.log_ns)
 
 
-def _states(messages: list[Recorded], keys: Keys, pad: PadGeometry | None) -> Iterator[ViewState]:
+def _states(messages: Iterable[Recorded], keys: Keys, pad: PadGeometry | None) -> Iterator[ViewState]:
     """Return the states in steps of the period; only the newest message of a topic in each is read."""
     reader, state = StateReader(keys), ViewState(pad=pad)
     newest: dict[str, bytes] = {}
@@ -130,7 +132,7 @@ def _states(messages: list[Recorded], keys: Keys, pad: PadGeometry | None) -> It
     for recorded in messages:
         message = recorded.message
         due_ns = recorded.log_ns + _PERIOD_NS if due_ns is None else due_ns
-        if recorded.log_ns >= due_ns:
+        if not -NS_PER_S <= recorded.log_ns - due_ns < 0:  # the clock was set back, or it is time
             state = _all_taken(reader, state, newest)
             newest.clear()
             due_ns += _PERIOD_NS * (1 + (recorded.log_ns - due_ns) // _PERIOD_NS)
