@@ -14,6 +14,7 @@ from link.program.text import read_text
 
 Positive = Annotated[float, Field(gt=0.0, le=1e4)]
 NotNegative = Annotated[float, Field(ge=0.0, le=1e4)]
+Coordinate = Annotated[float, Field(ge=-1e4, le=1e4)]
 """A length, time or speed beyond this was meant in another unit."""
 
 

@@ -5,9 +5,9 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from link.program.toml_config import Ascending, NotNegative, Positive, StrictModel
+from link.program.toml_config import Ascending, Coordinate, NotNegative, Positive, StrictModel
 
-Waypoint = tuple[float, float]
+Waypoint = tuple[Coordinate, Coordinate]
 """East and north in W, m."""
 SHIFT_CURVATURE = 8.0
 """Of a shift by d over a length L the greatest curvature is this times d / L^2 (`drive`)."""
@@ -68,7 +68,7 @@ class DriveTrack(StrictModel):
     # Of each stretch its length (m), and its curvature (1/m, positive to the left) at its beginning and at its end.
     stretches: Annotated[tuple[tuple[Positive, Curvature, Curvature], ...], Field(min_length=1)]
     # Lane changes and swerves: place (m), length (m), and how far to the left (m).
-    shifts: tuple[tuple[NotNegative, Positive, float], ...] = ()
+    shifts: tuple[tuple[NotNegative, Positive, Coordinate], ...] = ()
     grades: tuple[tuple[NotNegative, Grade], ...] = ()  # place (m) and grade; between two places it changes evenly
     humps: tuple[tuple[NotNegative, Positive, NotNegative], ...] = ()  # place of the middle (m), length (m), height (m)
     # Roughness as plane waves: amplitude (m), wavelength along the road (m), its ratio to that across, phase (rad).
@@ -125,7 +125,7 @@ class VesselTrack(StrictModel):
     modal_period_s: Positive
     speed_range_m_s: Annotated[tuple[Speed, Speed], Ascending] = (1.0, 8.0)  # drawn for each seed
     off_bow_max_rad: Annotated[float, Field(ge=0.0, le=1.5708)] = 0.7854  # where waves come from, drawn; 45 degrees
-    deck_forward_m: float = -57.0  # of amidships; the flight deck of DTMB 5415's class is right aft
+    deck_forward_m: Coordinate = -57.0  # of amidships; the flight deck of DTMB 5415's class is right aft
     acceleration_m_s2: Positive = 0.5
     run_s: Positive = 240.0  # behind the waiting point
     hull: HullConfig = HullConfig()

@@ -5,8 +5,15 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from link.messages import Vector3
-from link.program.toml_config import NotNegative, Positive, StrictModel
+from link.program.toml_config import Coordinate, NotNegative, Positive, StrictModel
+
+_ALTITUDE_MIN_M, _ALTITUDE_MAX_M = -500.0, 9000.0  # from the shore of the Dead Sea to the highest mountain
+_SPEED_MAX_M_S = 60.0  # of a vehicle on whose deck a drone stands, 216 km/h
+_Speed = Annotated[float, Field(ge=-_SPEED_MAX_M_S, le=_SPEED_MAX_M_S)]
+Place = tuple[Coordinate, Coordinate, Annotated[float, Field(ge=_ALTITUDE_MIN_M, le=_ALTITUDE_MAX_M)]]
+"""East, north and up in W, m."""
+RangeEnd = Annotated[float, Field(ge=0.0, le=655.0)]
+"""Of a range finder, m: DISTANCE_SENSOR tells centimetres in 16 bits."""
 
 
 class DatumConfig(StrictModel):
@@ -14,15 +21,15 @@ class DatumConfig(StrictModel):
 
     latitude_deg: Annotated[float, Field(ge=-90.0, le=90.0)] = 52.4733
     longitude_deg: Annotated[float, Field(ge=-180.0, le=180.0)] = 13.4017
-    altitude_m: Annotated[float, Field(ge=-500.0, le=9000.0)] = 89.0
+    altitude_m: Annotated[float, Field(ge=_ALTITUDE_MIN_M, le=_ALTITUDE_MAX_M)] = 89.0
 
 
 class StartConfig(StrictModel):
     """Where the drone stands at boot."""
 
-    position_enu_m: Vector3 = (0.0, 0.0, 0.0)  # of the point under its feet
+    position_enu_m: Place = (0.0, 0.0, 0.0)  # of the point under its feet
     yaw_rad: Annotated[float, Field(ge=-pi, le=pi)] = 0.0
-    velocity_enu_m_s: Vector3 = (0.0, 0.0, 0.0)  # on the deck of a vehicle that drives
+    velocity_enu_m_s: tuple[_Speed, _Speed, _Speed] = (0.0, 0.0, 0.0)  # on the deck of a vehicle that drives
 
 
 class DroneConfig(StrictModel):
@@ -67,7 +74,8 @@ class OwnStateConfig(StrictModel):
     receiver_accuracy_m: Positive | None = None
     position_time_s: Positive = 10.0  # of both errors' memory; sim_autopilot/plant/own_state.py says why
     velocity_time_s: Positive = 2.0
-    origin_step_enu_m: Vector3 | None = None  # how far the local frame's origin moves in flight
+    # How far the local frame's origin moves in flight.
+    origin_step_enu_m: tuple[Coordinate, Coordinate, Coordinate] | None = None
     origin_step_s: NotNegative = 0.0  # since boot, when it does
 
 
@@ -75,8 +83,8 @@ class RangeFinderConfig(StrictModel):
     """What looks down along the drone's body."""
 
     white_std_m: NotNegative = 0.0  # of a reading
-    min_m: NotNegative = 0.0  # of its range; what is nearer or farther is told as the range's end
-    max_m: Positive = 100.0  # likewise
+    min_m: RangeEnd = 0.0  # of its range; what is nearer or farther is told as the range's end
+    max_m: RangeEnd = 100.0  # likewise
 
 
 class VehicleConfig(StrictModel):

@@ -52,6 +52,21 @@ def test_an_unknown_key_is_named_with_the_file(tmp_path: Path) -> None:
         loaded(tmp_path, "instanse = 1\n")
 
 
+@pytest.mark.parametrize(
+    "text",
+    [
+        "[range_finder]\nmax_m = 1000.0",
+        "[start]\nposition_enu_m = [1e300, 0.0, 0.0]",
+        "[start]\nposition_enu_m = [0.0, 0.0, -10000.0]",
+        "[start]\nvelocity_enu_m_s = [1e9, 0.0, 0.0]",
+        "[own_state]\norigin_step_enu_m = [1e300, 0.0, 0.0]",
+    ],
+)
+def test_what_no_message_could_tell_is_refused(tmp_path: Path, text: str) -> None:
+    with pytest.raises(UserError, match=r"sim\.toml: .+ does not fit"):
+        loaded(tmp_path, text)
+
+
 def test_the_wind_blows_away_from_where_it_comes_from(tmp_path: Path) -> None:
     config = loaded(tmp_path, f"[wind]\nmean_m_s = 5.0\nfrom_rad = {pi / 3.0}\n")
     wind = wind_model(config).advance(0.01, 0.0)
