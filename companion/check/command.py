@@ -35,8 +35,12 @@ _SpeedMaxOption = Annotated[
     float, typer.Option("--speed-max", metavar="M_S", min=0.0, max=50.0, help="Of the vehicle to be landed on.")
 ]
 _LaunchOption = Annotated[bool, typer.Option("--launch", help="Check for a launch from a driving vehicle, too.")]
-_DurationOption = Annotated[float, typer.Option("--duration", min=1.0, help="Seconds for which rates are counted.")]
-_TimeoutOption = Annotated[float, typer.Option("--timeout", min=0.0, help="Seconds to look for an autopilot.")]
+_DurationOption = Annotated[
+    float, typer.Option("--duration", min=1.0, max=3600.0, help="Seconds for which rates are counted.")
+]
+_TimeoutOption = Annotated[
+    float, typer.Option("--timeout", min=0.0, help="Seconds to look for an autopilot; 0 looks for ever.")
+]
 _WriteOption = Annotated[bool, typer.Option("--write", help="Write the advised parameters, after asking.")]
 _YesOption = Annotated[bool, typer.Option("--yes", help="Write without asking.")]
 _KeepOption = Annotated[
@@ -129,7 +133,8 @@ def _find(
     from companion.check.session import open_check
 
     session = open_check(transport, mavlink.mavlink, system_id=mavlink.system_id, signing=signing)
-    typer.echo(f"looking for an autopilot on {mavlink.mavlink}, for {timeout_s:g} s at most", err=True)
+    limit = f", for {timeout_s:g} s at most" if timeout_s else ""
+    typer.echo(f"looking for an autopilot on {mavlink.mavlink}{limit}", err=True)
     session.find(timeout_s)
     return session
 

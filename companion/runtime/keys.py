@@ -22,7 +22,7 @@ _HostOption = Annotated[
 _NameOption = Annotated[
     list[str] | None, typer.Option("--name", metavar="NAME", help="Make certificates of these names only. Repeat it.")
 ]
-_DaysOption = Annotated[int, typer.Option("--days", min=1, help="For how long the certificates are valid.")]
+_DaysOption = Annotated[int, typer.Option("--days", min=1, max=36_500, help="For how long the certificates are valid.")]
 
 
 def keys(

@@ -76,6 +76,8 @@ MISTAKES = [
     ("scenarios", "faults --fault nosuch", ["'nosuch'", "pilot changes mode"]),
     ("scenarios", "faults --fault pilot --phase nosuch", ["'nosuch'", "align"]),
     ("scenarios", "faults --wire --fault battery", ["'battery'", "Zenoh router gone for 3 s"]),
+    ("companion", "check --duration inf", ["--duration inf", "from 1 to 3600"]),
+    ("companion", "keys new --days 99999999", ["--days 99999999", "from 1 to 36500"]),
     # configurations
     ("companion", "--config not.toml", ["not.toml", "line 1"]),
     ("companion", "--config key.toml", ["key.toml", "'descent.alignment.begin_distnce_m'", "'begin_distance_m'"]),
