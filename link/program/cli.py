@@ -166,6 +166,11 @@ def _fail(name: str, message: str, hint: str = "") -> int:
     return EXIT_USER_ERROR
 
 
+def note(text: str) -> None:
+    """Write a line that is no part of the result."""
+    sys.stderr.write(f"{text}\n")
+
+
 _AFTER_S = 3.0
 
 

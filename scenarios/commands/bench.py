@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from link.errors import UserError
-from link.program.cli import JsonOption
+from link.program.cli import JsonOption, note
 from scenarios.commands.options import SeedOption
 
 _PAIRS = 15
@@ -65,4 +65,4 @@ def _bench_against(there: Path, name: str, pairs: int, first_seed: int, *, as_js
 
 def _announce(what: str, *, as_json: bool) -> None:
     if not as_json:
-        sys.stderr.write(f"measuring: {what}\n")
+        note(f"measuring: {what}")

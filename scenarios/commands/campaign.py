@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from link.errors import UserError
-from link.program.cli import JsonOption, SetOption
+from link.program.cli import JsonOption, SetOption, note
 from link.program.extras import require
 from scenarios.commands.options import LANDINGS_MAX, WorkersOption
 
@@ -152,7 +152,7 @@ def say_missing(folder: Path) -> None:
 
     text = missing_landings(folder)
     if text is not None:
-        _note(text)
+        note(text)
 
 
 def _begin(plan: "Plan", where: "Where", out: Path | None, *, held_back: bool, as_json: bool) -> int:
@@ -186,19 +186,19 @@ def _fly(folder: Path, plan: "Plan", where: "Where", *, as_json: bool) -> int:
     from scenarios.campaigns.folder import read_timing
     from scenarios.campaigns.progress import CampaignProgress
 
-    _note(f"campaign in {folder}")
+    note(f"campaign in {folder}")
     try:
         with CampaignProgress() as progress:
             rows = fly_campaign(folder, plan, where, progress.update)
     except KeyboardInterrupt:
-        _note(f"what is done is kept; go on with: scenarios campaign --resume {folder}")
+        note(f"what is done is kept; go on with: scenarios campaign --resume {folder}")
         raise
     _print_summary(rows, read_timing(folder), plan, as_json=as_json)
     failed = [row for row in rows if row["error"] is not None]
     for row in failed[:_ERRORS_SHOWN]:
-        _note(f"{row['cell']}, seed {row['seed']}: {row['error']}")
+        note(f"{row['cell']}, seed {row['seed']}: {row['error']}")
     if len(failed) > _ERRORS_SHOWN:
-        _note(f"{len(failed) - _ERRORS_SHOWN} further errors; all are in {folder / 'landings.parquet'}")
+        note(f"{len(failed) - _ERRORS_SHOWN} further errors; all are in {folder / 'landings.parquet'}")
     return 1 if failed else 0
 
 
@@ -238,7 +238,3 @@ def _write_markdown(rows: Sequence["Row"], plan: "Plan") -> None:
 
 def _print_json(table: Mapping[str, Any]) -> None:
     sys.stdout.write(json.dumps(table, indent=2, allow_nan=False) + "\n")
-
-
-def _note(text: str) -> None:
-    sys.stderr.write(f"{text}\n")

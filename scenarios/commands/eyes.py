@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from link.program.cli import JsonOption
+from link.program.cli import JsonOption, note
 from link.program.extras import require
 
 _TOLD_EVERY = 100
@@ -42,7 +42,7 @@ def eyes_command(
 
     def tell(done: int) -> None:
         if not as_json and done % _TOLD_EVERY == 0:
-            sys.stderr.write(f"{done} frames\n")
+            note(f"{done} frames")
 
     looks = [
         *study(frames, seed, has_board=True, tell=tell),

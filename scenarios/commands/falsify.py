@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from link.errors import UserError
-from link.program.cli import JsonOption
+from link.program.cli import JsonOption, note
 from link.program.extras import require
 from scenarios.commands.options import WorkersOption
 
@@ -58,12 +58,12 @@ def falsify_command(
     )
     space = _space_of(request)
     folder = create_folder(out)
-    _note(f"{request.command} in {folder}")
+    note(f"{request.command} in {folder}")
     try:
         with FalsifyProgress(landings, reduction) as progress:
             result = falsify(request, space, folder, progress.update)
     except KeyboardInterrupt:
-        _note(f"what was flown and found is kept in {folder}")
+        note(f"what was flown and found is kept in {folder}")
         raise
     if as_json:
         sys.stdout.write(json.dumps(result.to_json(request), indent=2, allow_nan=False) + "\n")
@@ -115,7 +115,3 @@ def _print(result: "Result", request: "Request", folder: Path) -> None:
         f" {case.outcome.reason}\n"
         f"fly it: scenarios run {folder / 'case.toml'} --lockstep --seed {case.seed}\n"
     )
-
-
-def _note(text: str) -> None:
-    sys.stderr.write(f"{text}\n")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from link.errors import UserError
-from link.program.cli import JsonOption
+from link.program.cli import JsonOption, note
 
 if TYPE_CHECKING:
     from scenarios.identify.fit import Law
@@ -85,7 +85,7 @@ def _parse(given: list[str]) -> dict[str, float]:
 
 
 def _tell(stage: "Stage") -> None:
-    sys.stderr.write(f"{stage.name.lower()}\n")
+    note(f"{stage.name.lower()}")
 
 
 def _print(columns: "list[Column]") -> None:

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from link.program.cli import JsonOption
+from link.program.cli import JsonOption, note
 from link.program.extras import require
 from scenarios.commands.options import LANDINGS_MAX, WorkersOption
 
@@ -55,9 +55,9 @@ def rare_command(
     settings = Settings(particles=particles, steps=steps, in_time=True, least=level, seed=seed)
     try:
         with flying(subject, core_count() if workers is None else workers) as fly:
-            population = split(settings, fly, lambda population: _note(level_line(population)))
+            population = split(settings, fly, lambda population: note(level_line(population)))
     except KeyboardInterrupt:
-        _note("broken off: a splitting that is not over tells no probability, and nothing of it is kept")
+        note("broken off: a splitting that is not over tells no probability, and nothing of it is kept")
         raise
     table = report(subject.name, settings, population)
     if as_json:
@@ -65,7 +65,3 @@ def rare_command(
     else:
         print_report(table, sys.stdout)
     return 0 if table["converged"] else 1
-
-
-def _note(text: str) -> None:
-    sys.stderr.write(f"{text}\n")

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from link.errors import UserError
-from link.program.cli import JsonOption
+from link.program.cli import JsonOption, note
 from link.program.extras import require
 from scenarios.commands.options import LANDINGS_MAX, FirstSeedOption, OneFirmwareOption, WorkersOption
 
@@ -81,7 +81,7 @@ def retries_command(
     try:
         _fly(groups, found, workers)
     except KeyboardInterrupt:
-        sys.stderr.write(f"broken off: {len(found)} of {sum(map(len, groups))} descents are flown\n")
+        note(f"broken off: {len(found)} of {sum(map(len, groups))} descents are flown")
         _write(groups, found, as_json=as_json)
         raise
     rows = _write(groups, found, as_json=as_json)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from link.errors import UserError
-from link.program.cli import JsonOption
+from link.program.cli import JsonOption, note
 from link.program.extras import require
 from scenarios.commands.options import LANDINGS_MAX, WorkersOption
 
@@ -76,7 +76,7 @@ def sortie_command(
         with closing(run_tasks(LocalWorkers(fly_sortie, workers or core_count()), tasks, lost=lost_sortie)) as results:
             found.update((flown.task, flown) for flown in results)
     except KeyboardInterrupt:
-        sys.stderr.write(f"broken off: {len(found)} of {len(tasks)} sorties are flown\n")
+        note(f"broken off: {len(found)} of {len(tasks)} sorties are flown")
         _write(cell, [_row(found[task]) for task in tasks if task in found], as_json=as_json)
         raise
     rows = [_row(found[task]) for task in tasks]
