@@ -2,11 +2,10 @@
 
 Framing is not left to pymavlink: after a wrong checksum it throws away as many bytes as the broken frame claimed to
 have, good frames included. Here the search goes on at the next byte. Each sender's sequence numbers tell what was lost,
-came late and came twice.
+not what came late or twice.
 """
 
 import struct
-from collections import Counter
 
 from link.mavlink.contents import as_version1, frame_of, message_of
 from link.mavlink.dialect import Message, mavlink
@@ -22,12 +21,10 @@ _ALL_SEEN = (1 << _WINDOW) - 1
 class SequenceTracker:
     """Follows one sender's sequence numbers; a message that comes late is taken back from the lost ones."""
 
-    __slots__ = ("_newest", "_seen", "doubled", "late", "lost")
+    __slots__ = ("_newest", "_seen", "lost")
 
     def __init__(self) -> None:
         self.lost = 0
-        self.late = 0
-        self.doubled = 0
         self._newest: int | None = None
         self._seen = _ALL_SEEN  # bit n: the message n before the newest has come
 
@@ -49,15 +46,11 @@ class SequenceTracker:
             self._look_back(-step % _NUMBERS)
 
     def _look_back(self, steps: int) -> None:
-        if self._seen >> steps & 1 or steps >= _WINDOW:
-            self.doubled += 1
-            return
-        self._seen |= 1 << steps
-        self.lost -= 1
-        self.late += 1
+        if steps < _WINDOW and not self._seen >> steps & 1:
+            self._seen |= 1 << steps
+            self.lost -= 1
 
 
-_UNKNOWN_IDS_MAX = 64  # counted apart; noise would make up thousands
 _PEERS_MAX = 64  # whose unfinished frames are kept; more than a transport has at a time
 _SENDERS_MAX = 64  # whose sequences are followed; forgers would make up 65,536, and all are summed with each status
 
@@ -91,10 +84,9 @@ class MavlinkCodec:
         self._records_input = records_input
         self._input: list[bytes] = []
         self._sequences: dict[tuple[int, int], SequenceTracker] = {}
-        self._unknown: Counter[int] = Counter()
         self._unknown_messages = 0
         self._bytes_received = self._messages_received = 0
-        self._bytes_sent = self._messages_sent = 0
+        self._messages_sent = 0
         self._bad_bytes = self._bad_frames = 0
         self._refused = 0
 
@@ -106,15 +98,11 @@ class MavlinkCodec:
             bytes_received=self._bytes_received,
             messages_received=self._messages_received,
             messages_sent=self._messages_sent,
-            bytes_sent=self._bytes_sent,
             bad_frames=self._bad_frames,
             bad_bytes=self._bad_bytes,
             unknown_messages=self._unknown_messages,
-            unknown_ids=tuple(sorted(self._unknown.items())),
             refused_messages=self._refused,
             lost_messages=sum(one.lost for one in sequences),
-            late_messages=sum(one.late for one in sequences),
-            doubled_messages=sum(one.doubled for one in sequences),
         )
 
     def encode(self, message: Message) -> bytes:
@@ -141,7 +129,6 @@ class MavlinkCodec:
             frame = self.signing.sign(frame)
         self._sequence = (self._sequence + 1) % 256
         self._messages_sent += 1
-        self._bytes_sent += len(frame)
         return frame
 
     def decode(
@@ -205,7 +192,7 @@ class MavlinkCodec:
             if not _is_followed_by_frame(stream, start + size):
                 stream.skip()
                 return
-            self._count_unknown(message_id)
+            self._unknown_messages += 1
         else:
             message = message_of(frame, message_id)
             if message is None:
@@ -233,11 +220,6 @@ class MavlinkCodec:
         sender = message.get_srcSystem(), message.get_srcComponent()
         if sender not in self._sequences and len(self._sequences) < _SENDERS_MAX:
             self._sequences[sender] = SequenceTracker()
-
-    def _count_unknown(self, message_id: int) -> None:
-        self._unknown_messages += 1
-        if message_id in self._unknown or len(self._unknown) < _UNKNOWN_IDS_MAX:
-            self._unknown[message_id] += 1
 
 
 def _is_followed_by_frame(stream: Stream, end: int) -> bool:

@@ -166,7 +166,6 @@ class ParameterReader:
     """
 
     def __init__(self, send: Callable[[str], None]) -> None:
-        self.retried = 0
         self._send = send
         self._questions: dict[str, _Question] = {}
 
@@ -209,6 +208,5 @@ class ParameterReader:
             return False
         question.attempts += 1
         question.due_ns = t_ns + _PARAMETER_RETRY_NS
-        self.retried += 1
         self._send(name)
         return True

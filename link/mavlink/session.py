@@ -107,7 +107,6 @@ class MavlinkSession:
             filtered_messages=self._filtered,
             commands_retried=self._commands.retried,
             commands_timed_out=self._commands.timed_out,
-            parameters_retried=self._parameters.retried,
             round_trips=self._clock_sync.round_trips,
         )
 

@@ -10,29 +10,21 @@ class CodecStatistics(Struct, frozen=True, kw_only=True):
         bytes_received: all of them, good or bad.
         messages_received: known messages with a right checksum.
         messages_sent: frames encoded.
-        bytes_sent: in those frames.
         bad_frames: places where a frame seemed to start and did not hold.
         bad_bytes: bytes that belonged to no frame.
         unknown_messages: frames whose message id the dialect does not know.
-        unknown_ids: the first 64 message ids of these, each with its count, ascending.
         refused_messages: without a right signature where one is required.
         lost_messages: gaps in the sequence numbers of the first 64 senders.
-        late_messages: messages that filled a gap after all.
-        doubled_messages: messages that came more than once.
     """
 
     bytes_received: int
     messages_received: int
     messages_sent: int
-    bytes_sent: int
     bad_frames: int
     bad_bytes: int
     unknown_messages: int
-    unknown_ids: tuple[tuple[int, int], ...]
     refused_messages: int
     lost_messages: int
-    late_messages: int
-    doubled_messages: int
 
 
 class SessionStatistics(Struct, frozen=True, kw_only=True):
@@ -43,7 +35,6 @@ class SessionStatistics(Struct, frozen=True, kw_only=True):
         filtered_messages: messages that were from, or for, somebody else, or from a time that is not confirmed.
         commands_retried: command frames sent again.
         commands_timed_out: commands never answered.
-        parameters_retried: parameter requests sent again.
         round_trips: TIMESYNC answers used.
     """
 
@@ -51,5 +42,4 @@ class SessionStatistics(Struct, frozen=True, kw_only=True):
     filtered_messages: int
     commands_retried: int
     commands_timed_out: int
-    parameters_retried: int
     round_trips: int

@@ -56,7 +56,6 @@ class RunData:
         log: the truth.
         t_s: (n,) its times.
         vehicle_velocity_enu_m_s: (n, 3).
-        antenna_enu_m: (n, 3) true position of the vehicle's antenna.
         phases: in their order.
         estimate: None when the companion estimated nothing.
     """
@@ -69,7 +68,6 @@ class RunData:
     log: TruthLog
     t_s: Array
     vehicle_velocity_enu_m_s: Array
-    antenna_enu_m: Array
     phases: tuple[PhaseSpan, ...]
     estimate: EstimateTrack | None
 
@@ -104,7 +102,6 @@ def read_run(folder: Path) -> RunData:
         log=log,
         t_s=t_s,
         vehicle_velocity_enu_m_s=np.gradient(log.vehicle_position_enu_m, t_s, axis=0),
-        antenna_enu_m=antenna,
         phases=_phases(steps, start_ns, float(t_s[-1])),
         estimate=estimate_track(estimates, own, log, antenna, scenario),
     )

@@ -89,12 +89,11 @@ def test_noise_that_looks_like_an_unknown_frame_does_not_swallow_what_follows() 
     assert codec.statistics.unknown_messages == 0
 
 
-def test_noise_counts_no_more_than_64_unknown_ids_apart_and_no_strange_senders() -> None:
+def test_noise_that_looks_like_unknown_messages_introduces_no_senders() -> None:
     codec = MavlinkCodec(1, 191)
     for number in range(100):
         codec.decode(bytes([0xFD, 1, 0, 0, number * 37 % 256, number, 1, number, 0xFF, 0x7F, 5, 0, 0]))
     assert codec.statistics.unknown_messages == 100
-    assert len(codec.statistics.unknown_ids) == 64
     assert codec.statistics.lost_messages == 0
 
 
@@ -103,7 +102,7 @@ def test_unknown_messages_are_counted_and_are_no_gap() -> None:
     codec = MavlinkCodec(1, 191)
     data = sent[0] + unknown_frame(1) + sent[2] + sent[3]
     assert boot_times(codec.decode(data)) == [0, 2, 3]
-    assert codec.statistics.unknown_ids == ((UNKNOWN_ID, 1),)
+    assert codec.statistics.unknown_messages == 1
     assert (codec.statistics.lost_messages, codec.statistics.bad_bytes) == (0, 0)
 
 
@@ -140,7 +139,6 @@ def test_late_and_doubled_messages_are_not_lost(order: list[int], doubled: list[
     for number in (0, *(number + 1 for number in order), *(number + 1 for number in doubled)):
         codec.decode(sent[number])
     assert codec.statistics.lost_messages == 0
-    assert codec.statistics.doubled_messages == len(doubled)
 
 
 @given(st.lists(st.binary(max_size=400), max_size=8))
