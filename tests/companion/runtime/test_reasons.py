@@ -36,3 +36,8 @@ def test_what_no_reason_says_is_refused_with_the_nearest_name() -> None:
         reasons(["HARD_CONTAC"])
     with pytest.raises(UserError, match="'no such thing'; `companion reasons` lists them all"):
         reasons(["no", "such", "thing"])
+
+
+def test_reasons_are_shown_on_a_terminal_that_knows_ascii_only(capsys: pytest.CaptureFixture[str]) -> None:
+    reasons()
+    assert capsys.readouterr().out.isascii()
