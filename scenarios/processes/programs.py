@@ -127,14 +127,21 @@ class ProcessGroup:
         return " | ".join(line.strip() for line in lines[-_TAIL_LINES:] if line.strip()) or "it said nothing"
 
 
+def free_port(kind: socket.SocketKind = socket.SOCK_STREAM) -> int:
+    """Return a port of loopback that is free now, of TCP by default."""
+    with socket.socket(socket.AF_INET, kind) as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])
+
+
 def free_udp_port() -> int:
     """Return a UDP port of loopback that is free now."""
-    return _free_port(socket.SOCK_DGRAM)
+    return free_port(socket.SOCK_DGRAM)
 
 
 def free_tcp_endpoint() -> str:
     """Return a Zenoh endpoint on loopback whose port is free now."""
-    return f"tcp/127.0.0.1:{_free_port(socket.SOCK_STREAM)}"
+    return f"tcp/127.0.0.1:{free_port()}"
 
 
 def free_tcp_port(wanted: int) -> int:
@@ -143,7 +150,7 @@ def free_tcp_port(wanted: int) -> int:
         try:
             probe.bind(("127.0.0.1", wanted))
         except OSError:
-            return _free_port(socket.SOCK_STREAM)
+            return free_port()
     return wanted
 
 
@@ -161,14 +168,8 @@ def reserve_tcp_port(wanted: int) -> int:
         _reserved.append(lock)
         fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except OSError:  # somebody else's, or of another user
-        return _free_port(socket.SOCK_STREAM)
+        return free_port()
     return free_tcp_port(wanted)
-
-
-def _free_port(kind: socket.SocketKind) -> int:
-    with socket.socket(socket.AF_INET, kind) as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])
 
 
 def _describe_end(code: int) -> str:

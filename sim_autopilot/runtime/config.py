@@ -10,8 +10,7 @@ from link.program.toml_config import Coordinate, NotNegative, Positive, StrictMo
 _ALTITUDE_MIN_M, _ALTITUDE_MAX_M = -500.0, 9000.0  # from the shore of the Dead Sea to the highest mountain
 _SPEED_MAX_M_S = 60.0  # of a vehicle on whose deck a drone stands, 216 km/h
 _Speed = Annotated[float, Field(ge=-_SPEED_MAX_M_S, le=_SPEED_MAX_M_S)]
-Place = tuple[Coordinate, Coordinate, Annotated[float, Field(ge=_ALTITUDE_MIN_M, le=_ALTITUDE_MAX_M)]]
-"""East, north and up in W, m."""
+_Place = tuple[Coordinate, Coordinate, Annotated[float, Field(ge=_ALTITUDE_MIN_M, le=_ALTITUDE_MAX_M)]]
 RangeEnd = Annotated[float, Field(ge=0.0, le=655.0)]
 """Of a range finder, m: DISTANCE_SENSOR tells centimetres in 16 bits."""
 
@@ -27,7 +26,7 @@ class DatumConfig(StrictModel):
 class StartConfig(StrictModel):
     """Where the drone stands at boot."""
 
-    position_enu_m: Place = (0.0, 0.0, 0.0)  # of the point under its feet
+    position_enu_m: _Place = (0.0, 0.0, 0.0)  # of the point under its feet
     yaw_rad: Annotated[float, Field(ge=-pi, le=pi)] = 0.0
     velocity_enu_m_s: tuple[_Speed, _Speed, _Speed] = (0.0, 0.0, 0.0)  # on the deck of a vehicle that drives
 

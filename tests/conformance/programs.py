@@ -1,13 +1,14 @@
 """The stand-in as a process of its own, several times faster than real time, and clients run against it."""
 
 import select
-import socket
 import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+
+from scenarios.processes.programs import free_port, free_tcp_endpoint, free_udp_port
 
 SPEED = 4.0
 """Simulated seconds a second: the clients' setpoints, at 20 Hz of their own time, still come in time."""
@@ -24,19 +25,12 @@ class StandIn:
     tcp_port: int
 
 
-def free_port(kind: socket.SocketKind) -> int:
-    """Return a port that nobody has."""
-    with socket.socket(socket.AF_INET, kind) as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])
-
-
 @contextmanager
 def stand_in(firmware: str, speed: float = SPEED) -> Iterator[StandIn]:
     """Run `sim-autopilot` for as long as the block lasts."""
-    here = StandIn(firmware=firmware, udp_port=free_port(socket.SOCK_DGRAM), tcp_port=free_port(socket.SOCK_STREAM))
+    here = StandIn(firmware=firmware, udp_port=free_udp_port(), tcp_port=free_port())
     links = ("--mavlink", f"udpout:127.0.0.1:{here.udp_port}", "--mavlink", f"tcpin:127.0.0.1:{here.tcp_port}")
-    zenoh = ("--listen", f"tcp/127.0.0.1:{free_port(socket.SOCK_STREAM)}")
+    zenoh = ("--listen", free_tcp_endpoint())
     command = [sys.executable, "-m", "sim_autopilot", "--firmware", firmware, "--instant", "--speed", str(speed)]
     process = subprocess.Popen([*command, *links, *zenoh], stderr=subprocess.PIPE, text=True)
     try:

@@ -1,7 +1,6 @@
 """The vehicle's node without I/O, and the `ground-vehicle` program over real Zenoh on loopback."""
 
 import signal
-import socket
 import subprocess
 import sys
 import time
@@ -17,6 +16,7 @@ from link.program.clock import ClockTick
 from link.zenoh.keys import Keys, Publication
 from link.zenoh.session import Sample, ZenohOptions, ZenohSession, open_session
 from scenarios.catalogue.catalogue import load_scenario
+from scenarios.processes.programs import free_tcp_endpoint
 from scenarios.simulation.vehicle_node import VehicleNode, datum_of, departing_at_once
 
 START_NS = 1_800_000_000_000_000_000
@@ -117,9 +117,7 @@ def test_vehicle_departs_at_once_when_told_to() -> None:
 @contextmanager
 def program(*arguments: str) -> Iterator[tuple[subprocess.Popen[bytes], ZenohSession]]:
     """Start `ground-vehicle` and give it with a session that is connected to it."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        endpoint = f"tcp/127.0.0.1:{probe.getsockname()[1]}"
+    endpoint = free_tcp_endpoint()
     command = [sys.executable, "-m", "scenarios.ground_vehicle", "--listen", endpoint, *arguments]
     with subprocess.Popen(command) as process:
         try:

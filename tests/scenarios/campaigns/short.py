@@ -24,7 +24,7 @@ def short_cell(folder: Path, name: str = "short", *, time_limit_s: float = 0.5, 
 
 
 def failing_cell(folder: Path) -> str:
-    """Write a cell whose drone is so far away that its telemetry cannot hold it, and return its file's name."""
+    """Write a cell whose drone is farther away than one may start, and return its file's name."""
     return short_cell(folder, "failing", text="run.drone_start_enu_m = [1e12, 0.0, 0.0]\n")
 
 

@@ -96,9 +96,9 @@ def test_landing_that_raises_is_a_row_makes_the_exit_code_1_and_is_flown_again_w
     by_cell = {cell["cell"]: cell for cell in json.loads(printed.out)["cells"]}
     assert (by_cell["failing"]["errors"], by_cell["failing"]["seeds"], by_cell["short"]["errors"]) == (1, 1, 0)
     assert {cell["firmware"] for cell in by_cell.values()} == {"px4"}
-    assert "failing, seed 1: ValueError: GPS_RAW_INT cannot be packed" in printed.err
+    assert "failing, seed 1: ValidationError: 1 validation error for StartConfig" in printed.err
     errors = pl.read_parquet(folder / "landings.parquet").filter(cell="failing")["error"].to_list()
-    assert all("codec.py" in error for error in errors)
+    assert all("main.py" in error and "position_enu_m" in error for error in errors)
 
     assert scenarios("campaign", "--resume", folder, "--workers", 1) == 1
     assert len(journal_of(folder)) == 3

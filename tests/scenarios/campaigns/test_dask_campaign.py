@@ -2,7 +2,6 @@
 
 import os
 import signal
-import socket
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -18,6 +17,7 @@ from scenarios.campaigns.landing_task import Flights, Flown, Task
 from scenarios.campaigns.plan import Plan, make_plan
 from scenarios.processes.dask_workers import DaskWorkers
 from scenarios.processes.pool import run_tasks
+from scenarios.processes.programs import free_port
 from tests.integration.programs import Lines
 from tests.scenarios.campaigns.short import failing_cell, short_cell
 
@@ -49,12 +49,6 @@ def none_on(address: str) -> Iterator[int]:
     """Do no tasks on a cluster."""
     workers: DaskWorkers[int, int] = DaskWorkers(address, lambda _: abs)
     return run_tasks(workers, [], lost=lambda task, _: task)
-
-
-def free_port() -> int:
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])
 
 
 @contextmanager

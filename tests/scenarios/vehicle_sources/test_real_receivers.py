@@ -24,6 +24,7 @@ from link.messages import Fix, FixVelocity, PadGeometry, VehicleImu
 from link.payloads import cdr, json_messages
 from link.zenoh.keys import Keys
 from link.zenoh.session import Inbox, ZenohOptions, ZenohSession, open_session
+from scenarios.processes.programs import free_port, free_tcp_endpoint, free_udp_port
 from tests.integration.programs import Program, Programs
 from tests.scenarios.vehicle_sources.sentences import (
     ALTITUDE_M,
@@ -43,12 +44,6 @@ DEADLINE_S = 60.0
 PAD = ("--pad-size", "1.5", "1.2", "--pad-height", "1.6", "--antenna-to-pad", "0.8", "-0.1", "0.05")
 DATUM = Datum(latitude_rad=radians(LATITUDE_DEG), longitude_rad=radians(LONGITUDE_DEG), altitude_m=ALTITUDE_M)
 FRAME = LocalFrame(origin=DATUM, projection=Projection.TANGENT_PLANE)
-
-
-def free_port(kind: socket.SocketKind = socket.SOCK_STREAM) -> int:
-    with socket.socket(socket.AF_INET, kind) as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])
 
 
 class Vehicle:
@@ -85,7 +80,7 @@ def decoded(kind: type[M], inbox: Inbox) -> list[M]:
 
 @contextmanager
 def vehicle(*arguments: str) -> Iterator[Vehicle]:
-    endpoint = f"tcp/127.0.0.1:{free_port()}"
+    endpoint = free_tcp_endpoint()
     with Programs() as programs:
         program = programs.start("ground-vehicle", *arguments, *PAD, "--listen", endpoint)
         with open_session(ZenohOptions(connect=(endpoint,))) as session:
@@ -224,7 +219,7 @@ def test_a_file_that_holds_no_fix_is_told_in_one_line(tmp_path: Path) -> None:
 
 
 def test_an_autopilot_s_receiver_reaches_the_companion() -> None:
-    port = free_port(socket.SOCK_DGRAM)
+    port = free_udp_port()
     with vehicle("--mavlink", f"udpin:127.0.0.1:{port}") as car, Programs() as programs:
         datum = ("--datum", "47.2", "8.5", "500")
         zenoh = ("--connect", car.endpoint)

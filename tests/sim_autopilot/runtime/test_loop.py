@@ -2,7 +2,6 @@
 
 import itertools
 import signal
-import socket
 import subprocess
 import sys
 import time
@@ -21,6 +20,7 @@ from link.records import replace
 from link.transports.opening import Transport, open_transport
 from link.zenoh.keys import Keys
 from link.zenoh.session import Inbox, ZenohOptions, ZenohSession, open_session
+from scenarios.processes.programs import free_tcp_endpoint, free_udp_port
 from sim_autopilot.core.data import Deck
 from sim_autopilot.runtime.vehicle_view import VehicleView
 from tests.sim_autopilot.pilot import arm, set_mode, setpoint
@@ -30,12 +30,6 @@ pytestmark = pytest.mark.wire
 DEADLINE_S = 60.0
 KEYS = Keys("loop_test")
 PAD = PadGeometry(size_m=(1.5, 1.5), height_m=1.1, antenna_to_pad_m=(0.0, 0.0, 0.0))
-
-
-def free_port(kind: socket.SocketKind) -> int:
-    with socket.socket(socket.AF_INET, kind) as probe:
-        probe.bind(("127.0.0.1", 0))
-        return int(probe.getsockname()[1])
 
 
 def until(condition: Callable[[], bool]) -> None:
@@ -96,7 +90,7 @@ class Companion:
 
 @pytest.fixture
 def companion() -> Iterator[Companion]:
-    port, endpoint = free_port(socket.SOCK_DGRAM), f"tcp/127.0.0.1:{free_port(socket.SOCK_STREAM)}"
+    port, endpoint = free_udp_port(), free_tcp_endpoint()
     with (
         open_transport(f"udpin:127.0.0.1:{port}") as transport,
         open_session(ZenohOptions(listen=(endpoint,))) as zenoh,
