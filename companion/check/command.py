@@ -78,6 +78,8 @@ def check(
 
     if keep_file.is_dir():
         raise UserError(f"--keep {keep_file}: is a folder; name a file in it")
+    if restore is not None and set_values:
+        raise UserError("--write writes the advised parameters, --restore the former ones: give one of them")
     settings = chosen.load()
     signing = mavlink.signing()
     back = None if restore is None else _values_to_restore(restore)

@@ -136,6 +136,7 @@ MISTAKES = [
     ("scenarios", "replay .", ["no recording", "without --no-record"]),
     ("companion", "keys made --name a/b", ["--name 'a/b'", "192.168.4.1"]),
     ("companion", "check --restore empty.json", ["empty.json", "no parameters", "--write kept"]),
+    ("companion", "check --write --restore empty.json", ["--write", "--restore", "give one of them"]),
     ("companion", "check --write --keep .", ["--keep .", "is a folder"]),
     ("companion", "--zenoh-config .", ["--zenoh-config .", "Is a directory"]),
 ]
