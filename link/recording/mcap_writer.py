@@ -22,7 +22,6 @@ from link.recording.recorder import RecordsLost
 
 _CHUNK_BYTES = 128 * 1024  # what is lost at most when the power fails, and how long compressing takes at once
 _PATIENCE = 2_000  # records that are dropped after the disk failed before it is tried again
-_LIBRARY = "decklander"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -117,8 +116,8 @@ class McapFile:
         stream: Any = _Unbuffered(self._file)
         self._writer = Writer(stream, chunk_size=_CHUNK_BYTES, compression=CompressionType.ZSTD)
         try:
-            self._writer.start(profile=Profile.ROS2, library=_LIBRARY)
-            self._writer.add_metadata(_LIBRARY, dict(spec.metadata))
+            self._writer.start(profile=Profile.ROS2, library="decklander")
+            self._writer.add_metadata("decklander", dict(spec.metadata))
             for name, text in spec.attachments.items():
                 self._writer.add_attachment(0, 0, name, "text/plain", text.encode())
         except OSError:
