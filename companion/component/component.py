@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Sequence
 
+from companion.autopilots.driver import AutopilotView
 from companion.autopilots.state import AutopilotState
 from companion.component.commands import COMMANDS, StationCommands
 from companion.component.identity import (
@@ -16,6 +17,7 @@ from companion.component.pad_messages import adsb_vehicle, follow_target
 from companion.component.parameters import answers
 from companion.config.autopilot import PadOnMap
 from companion.config.companion import CompanionConfig
+from companion.landing.state.memory import StepMemory
 from companion.landing.state.step_data import StepOutputs
 from companion.situation.phases import FLYING_PHASES, Phase
 from link.mavlink.dialect import (
@@ -115,20 +117,27 @@ class MavlinkComponent:
         self._pad_timer = Timer(_PAD_NS)
         self._load: ComputerLoad | None = None
         self._other_flies_ns: int | None = None
+        self._found_ns: int | None = None
+        self.would_know_of_flight = not is_open
+        """Whether another companion that flies the drone would have been heard by now."""
 
-    def is_drone_flown(self, phase: Phase, local_ns: int) -> bool:
+    def is_drone_flown(self, memory: StepMemory, view: AutopilotView, local_ns: int) -> bool:
         """Return whether another companion flies the drone that this one does not, as its heartbeats have just told.
 
         They come where the autopilot passes them on, and need no network that both companions share. Who flies goes
-        on: an echo of its own heartbeats says the same.
+        on; of two that start at the same moment both give way, before the motors are ordered or on the ground.
         """
         told_ns = self._other_flies_ns
-        return phase not in FLYING_PHASES and told_ns is not None and local_ns - told_ns <= LOST_AFTER_NS
+        phase = memory.progress.phase
+        begins = phase is Phase.TAKEOFF and (not memory.control.driver.arm_asked or view.landed is True)
+        gives_way = begins or phase not in FLYING_PHASES
+        return gives_way and told_ns is not None and local_ns - told_ns <= LOST_AFTER_NS
 
     def take(
         self, requests: Sequence[Message], config: CompanionConfig, phase: Phase, local_ns: int
     ) -> CompanionConfig:
         """Take what others have asked; return the configuration that holds then."""
+        self._listen(local_ns)
         for message in requests if self._is_open else ():
             kind = message.get_msgId()
             if kind in _COMMAND_IDS:
@@ -136,7 +145,7 @@ class MavlinkComponent:
             elif kind == COMMAND_CANCEL_ID:
                 self._send(self._commands.cancel(message))
             elif kind == mavlink.MAVLINK_MSG_ID_HEARTBEAT:
-                self._hear_other(message, phase, local_ns)
+                self._hear_other(message, local_ns)
             elif kind == mavlink.MAVLINK_MSG_ID_FILE_TRANSFER_PROTOCOL:
                 self._send(self._files.answer(message, local_ns))
             else:
@@ -146,8 +155,15 @@ class MavlinkComponent:
         self._send(self._files.continue_burst())
         return config
 
-    def _hear_other(self, heartbeat: Message, phase: Phase, local_ns: int) -> None:
-        if tells_of_flight(heartbeat) and phase not in FLYING_PHASES:
+    def _listen(self, local_ns: int) -> None:
+        """Take note of how long the autopilot has been heard, which passes on what another companion tells."""
+        if self._found_ns is None and self._session.link_up:
+            self._found_ns = local_ns
+        if self._found_ns is not None and local_ns - self._found_ns > LOST_AFTER_NS:
+            self.would_know_of_flight = True
+
+    def _hear_other(self, heartbeat: Message, local_ns: int) -> None:
+        if tells_of_flight(heartbeat):
             self._other_flies_ns = local_ns
 
     def next_command(self) -> Command | None:
@@ -179,7 +195,7 @@ class MavlinkComponent:
         if not self._is_open:
             self._send([] if outputs.text is None else [cut_text(outputs.text)])
             return
-        self._session.heartbeat_state = heartbeat_state(phase)
+        self._session.heartbeat.tell(heartbeat_state(phase))
         if outputs.text is not None:
             self._send(self._texts.news(outputs.text, phase, outputs.status, local_ns))
         else:

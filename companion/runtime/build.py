@@ -86,6 +86,7 @@ def build_node(
     records_input: bool = False,
     recorder: Recorder | None = None,
     signing: Signing | None = None,
+    first_number: int = 0,
 ) -> CompanionNode:
     """Return a companion that has seen nothing yet.
 
@@ -99,6 +100,7 @@ def build_node(
         records_input: keep received frames for a recording of the link.
         recorder: takes all that goes in and out, None where nothing is recorded.
         signing: by a key shared with the autopilot; None sends unsigned and takes everything.
+        first_number: of MAVLink's sequence.
 
     Raises:
         UserError: what the configuration chooses is not installed.
@@ -110,7 +112,13 @@ def build_node(
         guidance=make_guidance(config.guidance.kind, config.guidance),
     )
     warm_up(system.guidance, config)
-    session = MavlinkSession(system_id, target_system_id=system_id, signing=signing, records_input=records_input)
+    session = MavlinkSession(
+        system_id,
+        target_system_id=system_id,
+        signing=signing,
+        records_input=records_input,
+        first_number=first_number,
+    )
     if recorder is not None:
         return RecordingNode(
             system, keys, session, recorder, dry_run=dry_run, publishes=publishes, is_component=is_component

@@ -123,12 +123,12 @@ class CompanionNode:
             self.system = replace(self.system, estimator=estimator)
 
     def is_ready_to_start(self) -> bool:
-        """Return whether a start would be accepted now."""
-        return self.autopilot.state.places_drone
+        """Return whether a start that nobody commands may be made: whoever else flies the drone would be known."""
+        return self.autopilot.state.places_drone and self._component.would_know_of_flight
 
     def start_refusal(self) -> CommandReply | None:
         """Return the answer to a start for a vehicle that was never heard; None where a step is to judge it."""
-        if self.vehicle_heard or not self.is_ready_to_start():
+        if self.vehicle_heard or not self.autopilot.state.places_drone:
             return None
         return self.vehicle.refuse_start()
 
@@ -201,6 +201,7 @@ class CompanionNode:
         switched = self.autopilot.pilot_switch.take()
         command, station = self.commands.next(switched, lambda: self._start_refusal(switched), local_ns)
         kept = self.inputs if self.phase in _KEEPS_LIMITS else None
+        is_flown = self._component.is_drone_flown(self.memory, state.view, local_ns)
         inputs = StepInputs(
             t_ns=self._clock.t_ns,
             monotonic_ns=self._clock.monotonic_ns,
@@ -211,7 +212,7 @@ class CompanionNode:
             driver=self.autopilot.driver,
             acknowledgements=self.autopilot.take_acknowledgements(),
             vehicle=self.vehicle.take(is_utc_known=way.is_utc_known),
-            rival=self._other_companion if self._component.is_drone_flown(self.phase, local_ns) else self._rival,
+            rival=self._other_companion if is_flown else self._rival,
             command=command,
             station=station,
             leaving=self._leaving,
@@ -240,8 +241,7 @@ class CompanionNode:
             if outputs.setpoint is not None:
                 self.autopilot.send_setpoint(outputs.setpoint, local_ns)
             self.autopilot.send_commands(outputs.commands, local_ns)
-            target = guiding_message(outputs, inputs, self.system.config, local_ns)
-            if target is not None:
+            if (target := guiding_message(outputs, inputs, self.system.config, local_ns)) is not None:
                 self.autopilot.session.send(target)
         self._component.tell(outputs, self.phase, self.autopilot.state, self.system.config, local_ns)
         if self.publisher.is_due(outputs, self._clock.monotonic_ns):

@@ -1,6 +1,7 @@
 """The program: opens everything, what a user may have mistaken first, then runs the loop."""
 
 import json
+import secrets
 import sys
 from contextlib import ExitStack
 from dataclasses import dataclass
@@ -105,6 +106,7 @@ def _node(asked: Program, recorder: BackgroundRecorder | None, signing: Signing 
         records_input=asked.record.tlog is not None,
         recorder=recorder,
         signing=signing,
+        first_number=secrets.randbelow(256),
     )
 
 

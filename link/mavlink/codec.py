@@ -64,6 +64,7 @@ class MavlinkCodec:
         records_input: keep each frame received for `take_input`, unknown ones included.
         signing: signs what is encoded and refuses what is not signed rightly; None for links without a key.
         answers_version1: encode MAVLink 1 as long as nothing else was received.
+        first_number: with which the sequence of what is encoded begins.
     """
 
     def __init__(
@@ -74,10 +75,11 @@ class MavlinkCodec:
         records_input: bool = False,
         signing: Signing | None = None,
         answers_version1: bool = False,
+        first_number: int = 0,
     ) -> None:
         self.signing = signing
         self._system_id, self._component_id = system_id, component_id
-        self._sequence = 0
+        self._sequence = first_number % _NUMBERS
         self._answers_version1 = answers_version1
         self._version1_heard = self._version2_heard = False
         self._streams: dict[int, Stream] = {}
@@ -127,7 +129,7 @@ class MavlinkCodec:
                 return frame
         elif self.signing is not None:
             frame = self.signing.sign(frame)
-        self._sequence = (self._sequence + 1) % 256
+        self._sequence = (self._sequence + 1) % _NUMBERS
         self._messages_sent += 1
         return frame
 

@@ -10,8 +10,9 @@ from link.mavlink.clock_map import ClockMap
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import Message, mavlink
 from link.mavlink.events import AutopilotRestarted, CommandTimedOut, Event, MessageReceived
+from link.mavlink.own_heartbeat import OwnHeartbeat
 from link.mavlink.parameters import parameter_question
-from link.mavlink.peer import Address, Peer, RestartWatch, companion_heartbeat
+from link.mavlink.peer import Address, Peer, RestartWatch
 from link.mavlink.requests import (
     PATIENT,
     CommandParams,
@@ -24,10 +25,8 @@ from link.mavlink.requests import (
 from link.mavlink.signing import Signing
 from link.mavlink.statistics import SessionStatistics
 from link.mavlink.streams import StreamRequests
-from link.mavlink.timer import Timer
 from link.mavlink.timesync import ClockSync, boot_time_ns
 
-_HEARTBEAT_PERIOD_NS = 1_000_000_000  # by the MAVLink heartbeat protocol
 _INTERVAL = Retries(attempts=3)  # of one message's interval, before the next one has its turn
 
 
@@ -40,6 +39,7 @@ class MavlinkSession:
         target_system_id: of the autopilot; None takes the first that is heard.
         signing: signs what is sent and refuses what is not signed rightly; None for a link without a key.
         records_input: keep the frames received for `take_input`.
+        first_number: of the sequence sent; another one of our address that begins elsewhere is told from an echo.
     """
 
     def __init__(
@@ -50,18 +50,19 @@ class MavlinkSession:
         signing: Signing | None = None,
         *,
         records_input: bool = False,
+        first_number: int = 0,
     ) -> None:
         self._signing = signing
-        self._codec = MavlinkCodec(system_id, component_id, records_input=records_input, signing=signing)
+        self._codec = MavlinkCodec(
+            system_id, component_id, records_input=records_input, signing=signing, first_number=first_number
+        )
         self._peer = Peer(Address(system_id, component_id), target_system_id)
         self._restarts = RestartWatch()
         self._clock_sync = ClockSync()
         self._commands = CommandSender(self._send_command)
         self._streams = StreamRequests(self._command_stream)
         self._parameters = ParameterReader(self._send_parameter_request)
-        self._heartbeat = Timer(_HEARTBEAT_PERIOD_NS)
-        self.heartbeat_state: tuple[int, int] = (mavlink.MAV_STATE_ACTIVE, 0)
-        """MAV_STATE and the custom mode that our heartbeats tell."""
+        self.heartbeat = OwnHeartbeat()
         self._filtered = 0
         self._output: list[bytes] = []
 
@@ -128,8 +129,7 @@ class MavlinkSession:
         events: list[Event] = [*self._peer.poll(t_ns)]
         for _, message in self._codec.flush(t_ns):
             events += self._take(message, t_ns)
-        if self._heartbeat.is_due(t_ns):
-            self.send(companion_heartbeat(*self.heartbeat_state))
+        self._output += self.heartbeat.poll(t_ns, self._codec.encode)
         if self._peer.is_up and (question := self._clock_sync.poll(t_ns)) is not None:
             self.send(question)
         events += self._without_streams(self._commands.poll(t_ns))
@@ -194,8 +194,8 @@ class MavlinkSession:
         return self._codec.take_input()
 
     def take_requests(self) -> list[Message]:
-        """Gives what was asked of us as a component since the last call, and heartbeats of whoever has our address."""
-        return self._peer.take_requests()
+        """Gives what was asked of us as a component since the last call, and heartbeats of another with our address."""
+        return [message for message in self._peer.take_requests() if not self.heartbeat.is_echo(message)]
 
     def _take(self, message: Message, t_ns: int) -> list[Event]:
         if is_accepted := self._peer.accepts(message):

@@ -48,7 +48,7 @@ class Station:
 def _ready() -> Station:
     station = Station()
     station.setup.run(3.0, station.setup.fix)
-    assert station.setup.node.is_ready_to_start()
+    assert station.setup.node.autopilot.state.places_drone
     assert station.setup.node.vehicle_heard
     return station
 

@@ -3,6 +3,7 @@
 import pytest
 
 from companion.component.identity import heartbeat_state
+from companion.runtime.start_and_handover import OwnStart
 from companion.situation.phases import Phase
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import mavlink
@@ -15,14 +16,37 @@ FLIES, IDLE = heartbeat_state(Phase.CHASE), heartbeat_state(Phase.IDLE)
 NO_COMPANION_OF_OURS = mavlink.MAV_STATE_ACTIVE, 0  # as MAVROS tells, from the same address
 
 
+def hear(setup: Setup, heartbeat: tuple[int, int]) -> None:
+    """Let the node hear another companion."""
+    other = MavlinkCodec(1, mavlink.MAV_COMP_ID_ONBOARD_COMPUTER)
+    setup.node.receive_mavlink(other.encode(companion_heartbeat(*heartbeat)), setup.t_ns)
+
+
 def ready(heartbeat: tuple[int, int]) -> Setup:
     """A node that may be started, and that has just heard another companion."""
     setup = Setup(is_component=True)
     setup.node.receive_pad(PAD)
     setup.run(3.0, setup.fix)
-    other = MavlinkCodec(1, mavlink.MAV_COMP_ID_ONBOARD_COMPUTER)
-    setup.node.receive_mavlink(other.encode(companion_heartbeat(*heartbeat)), setup.t_ns)
+    hear(setup, heartbeat)
     setup.run(0.1, setup.fix)
+    return setup
+
+
+def with_own_start(heard_after_s: float | None) -> Setup:
+    """A node that is to start by itself, and hears after a while another companion that flies."""
+    setup, start = Setup(is_component=True), OwnStart(wanted=True)
+    setup.node.receive_pad(PAD)
+    begun_ns, unheard = setup.t_ns, heard_after_s is not None
+
+    def turn() -> None:
+        nonlocal unheard
+        setup.fix()
+        if unheard and heard_after_s is not None and (setup.t_ns - begun_ns) * 1e-9 > heard_after_s:
+            hear(setup, FLIES)
+            unheard = False
+        start.follow(setup.node, fix_seen=True)
+
+    setup.run(LOST_AFTER_NS * 1e-9 + 1.5, turn)
     return setup
 
 
@@ -53,11 +77,52 @@ def test_start_is_accepted_once_the_other_companion_is_silent() -> None:
     assert [reply.accepted for reply in setup.node.take_replies()] == [True]
 
 
-def test_companion_that_flies_is_not_stopped_by_an_echo_of_its_own_heartbeats() -> None:
+def test_companion_in_the_air_is_not_stopped_by_heartbeats_of_another_one() -> None:
     setup = ready(IDLE)
     setup.node.request(Command.START)
     setup.run(3.0, setup.fix)
-    echo = MavlinkCodec(1, mavlink.MAV_COMP_ID_ONBOARD_COMPUTER)
-    setup.node.receive_mavlink(echo.encode(companion_heartbeat(*FLIES)), setup.t_ns)
+    setup.autopilot.landed_state = mavlink.MAV_LANDED_STATE_IN_AIR
+    setup.run(0.5, setup.fix)
+    hear(setup, FLIES)
     setup.run(0.5, setup.fix)
     assert setup.node.phase is Phase.TAKEOFF
+
+
+@pytest.mark.parametrize(("heard_after_s", "phase"), [(None, Phase.TAKEOFF), (2.9, Phase.IDLE)])
+def test_own_start_waits_until_three_heartbeats_of_another_companion_would_have_been_heard(
+    heard_after_s: float | None, phase: Phase
+) -> None:
+    assert with_own_start(heard_after_s).node.phase is phase
+
+
+def test_start_is_told_at_once_and_not_with_the_next_second() -> None:
+    setup = ready(IDLE)
+    setup.node.request(Command.START)
+    told = len(setup.autopilot.of_type("HEARTBEAT"))
+    setup.run(0.1, setup.fix)
+    (heartbeat,) = setup.autopilot.of_type("HEARTBEAT")[told:]
+    assert heartbeat.system_status == mavlink.MAV_STATE_ACTIVE
+
+
+@pytest.mark.parametrize("after_s", [0.1, 2.5])
+def test_who_still_stands_gives_way_to_one_that_started_at_the_same_moment(after_s: float) -> None:
+    setup = ready(IDLE)
+    setup.node.request(Command.START)
+    setup.run(after_s, setup.fix)
+    hear(setup, FLIES)
+    setup.run(0.1, setup.fix)
+    setpoints = len(setup.autopilot.setpoints())
+    setup.run(1.0, setup.fix)
+    assert setup.node.phase is Phase.PILOT
+    assert len(setup.autopilot.setpoints()) == setpoints
+
+
+def test_echo_of_its_own_heartbeat_is_no_other_companion() -> None:
+    setup = ready(IDLE)
+    setup.node.request(Command.START)
+    told = len(setup.autopilot.of_type("HEARTBEAT"))
+    setup.run(0.1, setup.fix)
+    (heartbeat,) = setup.autopilot.of_type("HEARTBEAT")[told:]
+    setup.node.receive_mavlink(bytes(heartbeat.get_msgbuf()), setup.t_ns)
+    setup.run(3.0, setup.fix)
+    assert setup.autopilot.armed
