@@ -78,7 +78,7 @@ def hand_over(node: CompanionNode, turn: Callable[[], None], log: Log) -> None:
     driver = node.autopilot.driver
     if driver is None or not node.flies:
         return
-    log.warning("stopped in flight", phase=node.phase.value, asks_for=driver.hover_mode)
+    log.warning("ends with the motors under its command", phase=node.phase.value)
     node.leave()
     if not _is_released(node, turn):
         log.warning("handed over without an answer: the autopilot acts by its parameter", name=driver.timeout_parameter)
