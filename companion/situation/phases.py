@@ -53,7 +53,7 @@ class Event(Enum):
     CLEAR_TO_HOLD = "clear to hold"  # the abort climb is complete, no retry is left or no vehicle is there
     REFUSED = "refused"  # the autopilot did not arm or give control in time
     CALLED_OFF = (
-        "called off"  # by an operator, or as the vehicle drives off: before the motors were armed, or on its deck
+        "called off"  # by an operator, an outage, or as the vehicle drives off: before the arming, or on its deck
     )
     CARRIED_OFF = "carried off"  # the vehicle drives off under a drone that has armed and stands on it
     TIME_LIMIT = "time limit"
@@ -144,6 +144,7 @@ TRANSITIONS: dict[tuple[Phase, Event], Phase] = {
     (Phase.RALLY, Event.VEHICLE_FOUND): Phase.RETURN,
     **{(phase, Event.VEHICLE_LOST): Phase.RALLY for phase in (Phase.FOLLOW, Phase.RETURN)},
     (Phase.LIFT_OFF, Event.CALLED_OFF): Phase.TOUCHDOWN,
+    (Phase.ABORT, Event.CALLED_OFF): Phase.TOUCHDOWN,
     (Phase.LIFT_OFF, Event.TIME_LIMIT): Phase.ABORT,
     **{
         (phase, event): Phase.ABORT

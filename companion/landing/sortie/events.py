@@ -112,6 +112,8 @@ def decide_sortie(
             return _stay_together(sortie, progress, s, config)
         case Phase.RALLY:
             return _find(sortie, s, config)
+        case Phase.ABORT if sortie.is_out:
+            return _stay_on_deck(progress, s, config)
         case Phase.WAITING | Phase.HOLD if sortie.is_out:
             return _turn_home(sortie, progress, s, config) or _go_on(sortie, progress, s, config)
         case _:
@@ -211,6 +213,15 @@ def _go_on(sortie: SortieMemory, progress: Progress, s: Situation, config: Compa
     if not (is_outage and s.autopilot.in_control and holds(HEARD, progress.held, s, config)):
         return None
     return (Event.FOLLOW if sortie.follows else Event.RETURN), Cause(Reason.HEARD_AGAIN)
+
+
+def _stay_on_deck(progress: Progress, s: Situation, config: CompanionConfig) -> Decision | None:
+    """Return the end of a lift-off that an outage has broken off, once it is over and the drone stands on the deck.
+
+    Not every autopilot takes off by setpoints: its motors would run until it stops them by itself.
+    """
+    stands = s.autopilot.armed and holds(HEARD, progress.held, s, config) and has_not_left_deck(s, config)
+    return (Event.CALLED_OFF, progress.cause) if stands else None
 
 
 def _find(sortie: SortieMemory, s: Situation, config: CompanionConfig) -> Decision | None:

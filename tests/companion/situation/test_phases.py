@@ -45,8 +45,9 @@ def test_motors_are_never_taken_for_off_without_a_contact_first() -> None:
     sources = {phase for (phase, _), target in TRANSITIONS.items() if target is Phase.SECURED}
     assert sources == {Phase.TOUCHDOWN}
     before = {phase: event for (phase, event), target in TRANSITIONS.items() if target is Phase.TOUCHDOWN}
-    assert set(before) == {Phase.DESCEND, Phase.ON_DECK, Phase.LIFT_OFF, Phase.TAKEOFF}
+    assert set(before) == {Phase.DESCEND, Phase.ON_DECK, Phase.LIFT_OFF, Phase.TAKEOFF, Phase.ABORT}
     assert before[Phase.TAKEOFF] is Event.CARRIED_OFF  # likewise
+    assert before[Phase.ABORT] is Event.CALLED_OFF
     assert before[Phase.LIFT_OFF] is Event.CALLED_OFF  # that only a drone which stands on the deck still is given
 
 

@@ -16,7 +16,7 @@ from companion.situation.situation import Situation
 from link.messages import Command, Vector3
 from link.records import replace
 from tests.companion.facts import TICK_NS, pad_at, situation
-from tests.companion.world import CONFIG, DISARM, GEAR_M, STEP_NS, Flight, KnownVehicle, on_deck
+from tests.companion.world import CONFIG, DISARM, GEAR_M, STEP_NS, Flight, KnownVehicle, on_deck, reached
 
 NEAR_M, HEIGHT_M = 3.0, 0.5
 COARSE_M = 1.5
@@ -151,6 +151,33 @@ def test_launch_of_a_drone_whose_place_is_not_known_ends_at_once_and_says_so(rea
     said = [out.text for out in flight.run(CONFIG.abort.own_age_max_s + 0.2) if out.text]
     assert said[0] == f"{Phase.TOUCHDOWN.value}: {sentence(Cause(reason))}"
     assert not flight.view.armed
+
+
+@pytest.mark.parametrize(
+    ("lifts", "phases"), [(False, [Phase.TOUCHDOWN, Phase.SECURED]), (True, [Phase.LIFT_OFF, Phase.ABORT])]
+)
+def test_lift_off_that_an_outage_has_broken_off_stops_the_motors_of_a_drone_that_still_stands(
+    *, lifts: bool, phases: list[Phase]
+) -> None:
+    flight = reached(Phase.LIFT_OFF)
+    flight.refuses_plain_disarm = False
+    stood = flight.own.position_enu_m
+
+    def wait_for(time_s: float, *, landed: bool) -> None:
+        for _ in range(round(time_s * 1e9 / STEP_NS)):
+            flight.step()
+            flight.view = replace(flight.view, landed=landed)
+            flight.own = replace(flight.own, position_enu_m=stood, velocity_enu_m_s=(0.0, 0.0, 0.0))
+
+    flight.own_is_silent = True
+    wait_for(1.0, landed=True)
+    assert flight.phase is Phase.ABORT
+    flight.own_is_silent = False
+    wait_for(CONFIG.abort.heard_hold_s - 0.1, landed=True)
+    assert flight.phase is Phase.ABORT
+    wait_for(0.2, landed=not lifts)
+    assert flight.history[-2:] == phases
+    assert flight.view.armed is lifts
 
 
 @pytest.mark.parametrize(("grade", "is_quiet"), [(0.1, True), (0.0, False)])
