@@ -1,9 +1,10 @@
 """The memory of a sortie, from its launch or first station until the drone is home, and how long its battery lasts.
 
 BATTERY_STATUS has the share in whole percents. Between two new lows of it the time tells the rate of use, over the last
-half minute or more of this flight; it also rises, where a voltage recovers that had sagged. What is left is taken for a
-percent less than told, and for less by what the rate has used since the last change, so that it also falls where
-nothing tells it any more.
+half minute or more of this flight; it also rises, where a voltage recovers that had sagged. A low above which all that
+is told has stayed for half a minute was none: neither a sag nor a false report lasts so long. What is left is taken
+for a percent less than told, and for less by what the rate has used since the last change, so that it also falls
+where nothing tells it any more.
 """
 
 import math
@@ -31,11 +32,13 @@ class BatteryWatch(Struct, frozen=True, kw_only=True):
         share: that was told last, 0 to 1; None before the first.
         told_ns: when it changed last, monotonic.
         lows: (monotonic ns, share) each time that it became less than ever before, oldest first.
+        above_ns: since when more than the last of them has been told, monotonic; None while it has not.
     """
 
     share: float | None = None
     told_ns: int = 0
     lows: tuple[tuple[int, float], ...] = ()
+    above_ns: int | None = None
 
 
 UNTOLD = BatteryWatch()
@@ -44,13 +47,26 @@ UNTOLD = BatteryWatch()
 
 def update_battery(watch: BatteryWatch, share: float | None, monotonic_ns: int) -> BatteryWatch:
     """Return the watch after what is told now."""
-    if share is None or share == watch.share:
+    if share is None:
+        return watch
+    watch = _without_false_lows(watch, share, monotonic_ns)
+    if share == watch.share:
         return watch
     told = replace(watch, share=share, told_ns=monotonic_ns)
     lowest = watch.lows[-1][1] if watch.lows else watch.share
     if lowest is None or share >= lowest:
         return told
     return replace(told, lows=(*watch.lows, (monotonic_ns, share))[-_LOWS_MAX:])
+
+
+def _without_false_lows(watch: BatteryWatch, share: float, monotonic_ns: int) -> BatteryWatch:
+    if not watch.lows or share <= watch.lows[-1][1]:
+        return watch if watch.above_ns is None else replace(watch, above_ns=None)
+    if watch.above_ns is None:
+        return replace(watch, above_ns=monotonic_ns)
+    if (monotonic_ns - watch.above_ns) * 1e-9 < _SPAN_MIN_S:
+        return watch
+    return replace(watch, lows=tuple(low for low in watch.lows if low[1] >= share), above_ns=None)
 
 
 def use_per_s(watch: BatteryWatch) -> float | None:

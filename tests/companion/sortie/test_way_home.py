@@ -71,6 +71,17 @@ def test_share_that_is_found_to_be_more_counts_at_the_rate_of_before() -> None:
     assert left_of(watch, 60.0) == pytest.approx((0.9 - RESOLUTION - RESERVE) * 3600.0)
 
 
+def test_share_that_was_told_far_too_low_for_a_moment_is_forgotten_after_half_a_minute() -> None:
+    """One report a second of a battery that lasts 20 minutes; two of them say that it is empty."""
+    watch = BatteryWatch()
+    for time_s in range(240):
+        share = 0.1 if time_s in (100, 101) else round(0.8 - 0.01 * (time_s // 12), 2)
+        watch = update_battery(watch, share, time_s * 10**9)
+        if time_s == 101:
+            assert left_of(watch, 101.0) == 0.0
+    assert left_of(watch, 239.0) == pytest.approx((0.8 - RESERVE) * 1200.0 - 240.0, rel=0.1)
+
+
 @given(silent_s=st.floats(0.0, 3600.0))
 def test_battery_that_tells_nothing_more_drains_on_as_it_did(silent_s: float) -> None:
     watch = watched([(0.0, 0.62), (12.0, 0.61), (24.0, 0.60), (36.0, 0.59), (48.0, 0.58)])
