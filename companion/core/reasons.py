@@ -128,7 +128,10 @@ class Reason(Enum):
     )
     VEHICLE_TAKEN = "{} lands on this vehicle, or stands on it: wait until it has gone"
     STAMPS_LATE = "vehicle's fixes come {:.1f} s after their stamps: set its clock by GNSS or NTP, or use a faster link"
-    STAMPS_AHEAD = "vehicle's fixes come {:.2f} s before their stamps: set its clock by GNSS or NTP, or the autopilot's"
+    STAMPS_AHEAD = (
+        "vehicle's fixes come {:.2f} s before their stamps: set its clock by GNSS or NTP, or the autopilot's; "
+        "or the autopilot's link is too slow"
+    )
     VEHICLE_TOO_FAST = "vehicle at {:.1f} m/s needs {:.1f} m/s, the limit is {:.1f}: raise {} or drive slower"
     VEHICLE_TOO_FAR = (
         "vehicle at {:.1f} m/s goes {:.0f} m in {:g} s, limits.range_max_m is {:g}: raise it or drive slower"

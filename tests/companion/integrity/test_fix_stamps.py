@@ -28,6 +28,7 @@ def test_landing_on_fixes_from_the_future_is_broken_off(phase: Phase) -> None:
     assert flight.reason is Reason.VEHICLE_CLOCK_AHEAD
     flight.run_until(Phase.HOLD)
     assert "0.30 s before their stamps" in flight.sentence
+    assert "link is too slow" in flight.sentence
 
 
 def test_landing_on_fixes_from_the_future_is_not_begun() -> None:
