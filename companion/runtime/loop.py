@@ -162,8 +162,7 @@ class _Loop:
             for onlooker in self._onlookers:
                 onlooker.tell(self._node, local_ns)
             self._after_step()
-        load = self._computer.poll()
-        if load is not None:
+        if (load := self._computer.poll()) is not None:
             self._node.tell_load(load, local_ns)
 
     def _note_time(self, state_to_setpoint_s: float) -> None:
@@ -198,7 +197,8 @@ class _Loop:
         self._say_link()
         self._say_losses()
         self._ask_for_pad()
-        self._start.follow(self._node, fix_seen=self._fix_seen)
+        if self._start.follow(self._node, fix_seen=self._fix_seen):
+            self._log.warning("start called off: another companion is there for this drone")
         self._check_time_out()
 
     def _say_link(self) -> None:

@@ -30,12 +30,20 @@ class OwnStart:
         self.pending, self._called_off = False, True
         return True
 
-    def follow(self, node: CompanionNode, *, fix_seen: bool) -> None:
-        """Ask for the start as soon as everything is there, and no operator's command waits."""
+    def follow(self, node: CompanionNode, *, fix_seen: bool) -> bool:
+        """Ask for the start as soon as everything is there, and no operator's command waits.
+
+        Return whether another companion of this drone has it called off: who waits for that one's end would arm a drone
+        that has just landed.
+        """
+        if self.pending and _is_another_there(node):
+            self.pending = False
+            return True
         self.pending = self.pending and node.phase is Phase.IDLE
         is_free = node.is_ready_to_start() and not node.commands.waits
         if self.pending and fix_seen and node.pad_known and is_free:
             node.request(Command.START)
+        return False
 
     def answered(self, replies: list[CommandReply]) -> list[CommandReply]:
         """Return the replies of a step; to the command that called the start off it has been a success."""
@@ -61,6 +69,11 @@ class OwnStart:
             raise UserError(
                 f"the vehicle did not describe its pad on {keys.pad} within {timeout_s:g} s: let it answer there"
             )
+
+
+def _is_another_there(node: CompanionNode) -> bool:
+    rival = None if node.inputs is None else node.inputs.rival
+    return rival is not None and rival.is_this_drone
 
 
 LEAVE_MAX_S = ARMED_TOLD_S + 1.0

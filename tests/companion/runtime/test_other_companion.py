@@ -32,7 +32,7 @@ def ready(heartbeat: tuple[int, int]) -> Setup:
     return setup
 
 
-def with_own_start(heard_after_s: float | None) -> Setup:
+def with_own_start(heard_after_s: float | None, later_s: float = 1.5) -> Setup:
     """A node that is to start by itself, and hears after a while another companion that flies."""
     setup, start = Setup(is_component=True), OwnStart(wanted=True)
     setup.node.receive_pad(PAD)
@@ -46,7 +46,7 @@ def with_own_start(heard_after_s: float | None) -> Setup:
             unheard = False
         start.follow(setup.node, fix_seen=True)
 
-    setup.run(LOST_AFTER_NS * 1e-9 + 1.5, turn)
+    setup.run(LOST_AFTER_NS * 1e-9 + later_s, turn)
     return setup
 
 
@@ -93,6 +93,12 @@ def test_own_start_waits_until_three_heartbeats_of_another_companion_would_have_
     heard_after_s: float | None, phase: Phase
 ) -> None:
     assert with_own_start(heard_after_s).node.phase is phase
+
+
+def test_own_start_that_met_another_companion_does_not_follow_once_that_one_has_landed() -> None:
+    setup = with_own_start(2.9, later_s=LOST_AFTER_NS * 1e-9 + 1.0)
+    assert setup.node.phase is Phase.IDLE
+    assert setup.autopilot.setpoints() == []
 
 
 def test_start_is_told_at_once_and_not_with_the_next_second() -> None:
