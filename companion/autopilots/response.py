@@ -26,6 +26,7 @@ from msgspec import Struct
 from scipy.linalg import expm, solve_continuous_are, solve_continuous_lyapunov
 
 from companion.core.data import Array
+from companion.planning.following import Following
 
 DRAG_PER_S = 0.25
 """Drag by mass and airspeed, which no autopilot tells: the benchmark's airframe has 0.17 (0.25 N s/m by 1.5 kg), the
@@ -115,6 +116,7 @@ class ResponseModel:
 
     Attributes:
         cascade: as given.
+        following: the motion of the deviation that a path's acceleration makes.
         covariance: (4, 4) of the estimated state, stationary, in gusts of `PUSH_STD_M_S2`, which its gain is made for.
         report_covariance: (4, 4) the part of it that the reports' errors make.
         spread: (4, 4) of the state of a drone that follows as the model says, stationary.
@@ -145,6 +147,7 @@ class ResponseModel:
         heard = self._gain @ report @ self._gain.T
         self.report_covariance: Array = np.asarray(solve_continuous_lyapunov(self._corrected, -heard), dtype=np.float64)
         self._free, self._forced = _responses(self._motion, self._asked, offset_s)
+        self.following = Following(motion=self._motion, asked=self._asked)
 
     def update(self, state: Array, measured: Array, acceleration_m_s2: Array, dt_s: float) -> Array:
         """Return the state (4, k) of k axes after a report.
@@ -171,9 +174,9 @@ class ResponseModel:
         deviation = state[:2]
         return np.asarray(np.sum(deviation * (self._told @ deviation), axis=0))
 
-    def carry(self, state: Array, dt_s: float) -> Array:
-        """Return the state (4, k) a moment later on a steady path, without a report."""
-        return _move(self._motion, state, np.zeros_like(state), dt_s)
+    def carry(self, state: Array, acceleration_m_s2: Array, dt_s: float) -> Array:
+        """Return the state (4, k) a moment later on a path with that acceleration (k,), without a report."""
+        return _move(self._motion, state, np.outer(self._asked, acceleration_m_s2), dt_s)
 
     def predict(self, state: Array, acceleration_m_s2: Array) -> Array:
         """Return the states (n, 4, k) at the model's offsets.

@@ -3,6 +3,7 @@
 import numpy as np
 
 from companion.config.companion import CompanionConfig
+from companion.config.planning import GuidanceKind
 from companion.core.data import STEP_MAX_S, FlightLimits
 from companion.landing.carried_on import limit_rates
 from companion.landing.decisions.conditions import is_fix_old
@@ -18,6 +19,7 @@ from companion.landing.steering.sway import update_sway
 from companion.landing.steering.targets import Aim, hover_aim, is_at_rest, pad_aim, stopping_point
 from companion.landing.steering.virtual_model import Tracking, add_to_past, state_then
 from companion.landing.touchdown.levelling import levelled, levelling_now, limit_tilt
+from companion.planning.following import Following
 from companion.planning.guidance import PlanRequest, PlanResult, ReferenceState, Target
 from companion.situation.phases import FLYING_PHASES, LANDING_PHASES, STATION_PHASES, Phase
 from companion.situation.situation import Drone, Situation
@@ -90,9 +92,11 @@ def fly(
     if is_at_rest(start, aim):  # there is nothing to plan
         tracking = add_to_past(tracking, max(starts_ns, reference_ns), start)
         return replace(memory, model=replace(model, reference_ns=reference_ns, plan=None, tracking=tracking)), None
+    target, following = _for_the_drone(aim.target, start, memory, inputs, system.config)
     request = PlanRequest(
         state=start,
-        target=_for_the_drone(aim.target, memory, inputs, ahead_s),
+        target=target,
+        following=following,
         limits=limits,
         floor_enu_m=aim.floor_enu_m,
         touched_enu_m=aim.touched_enu_m,
@@ -141,14 +145,24 @@ def _late_s(model: ModelMemory, monotonic_ns: int, period_s: float) -> float:
     return max(min((monotonic_ns - model.reference_ns) * 1e-9, STEP_MAX_S), -period_s)
 
 
-def _for_the_drone(target: Target, memory: StepMemory, inputs: StepInputs, ahead_s: float) -> Target:
-    """Return where the virtual model is wanted, so that the drone, which will be off it, is where the target is."""
+def _for_the_drone(
+    target: Target, start: ReferenceState, memory: StepMemory, inputs: StepInputs, config: CompanionConfig
+) -> tuple[Target, Following | None]:
+    """Return where the virtual model is wanted, so that the drone is where the target is, and how that will follow."""
     tracking, response = memory.model.tracking, inputs.response
     if memory.progress.phase not in LANDING_PHASES | STATION_PHASES or response is None or tracking.compared_ns is None:
-        return target
-    chase = memory.model.plan if memory.progress.phase is Phase.CHASE else None
-    late_s = (inputs.monotonic_ns - tracking.compared_ns) * 1e-9
-    return make_up(target, chase, tracking, response, late_s=late_s, ahead_s=ahead_s)
+        return target, None
+    foresees = config.guidance.kind is GuidanceKind.MPC
+    target = make_up(
+        target,
+        start,
+        tracking,
+        response,
+        late_s=(inputs.monotonic_ns - tracking.compared_ns) * 1e-9,
+        ahead_s=inputs.ahead_s(config),
+        planner_foresees=foresees,
+    )
+    return target, response.following if foresees else None
 
 
 def _at_drone(

@@ -20,6 +20,7 @@ from scipy.linalg import solve_continuous_are
 from companion.config.planning import MpcConfig
 from companion.core.data import Array
 from companion.planning.compiled import compiled_kernel
+from companion.planning.following import Following, deviations
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -107,18 +108,20 @@ class AxisCost:
 
 
 @compiled_kernel
-def slopes_of(weights: Array, x: Array, reference: Array, jerk: Array) -> Array:
+def slopes_of(level: Array, upright: Array, x: Array, reference: Array, jerk: Array) -> Array:
     """Return the linear terms (3, m) of the axes' costs over the moves.
 
     Args:
-        weights: as `AxisCost` has them.
+        level: weights of the horizontal axes, as `AxisCost` has them.
+        upright: likewise of the vertical one.
         x: (3, 3) the state: position, velocity, acceleration; axis.
         reference: (3, 3, n) of position, velocity, acceleration; axis; node.
         jerk: (3, m) the reference of the moves.
     """
-    moves, nodes = weights.shape[1], reference.shape[2]
+    moves, nodes = level.shape[1], reference.shape[2]
     slopes = np.empty((3, moves))
     for axis in range(3):
+        weights = upright if axis == 2 else level
         for move in range(moves):
             slope = weights[0, move] * x[0, axis] + weights[1, move] * x[1, axis] + weights[2, move] * x[2, axis]
             slopes[axis, move] = slope - weights[-1, move] * jerk[axis, move]
@@ -126,14 +129,22 @@ def slopes_of(weights: Array, x: Array, reference: Array, jerk: Array) -> Array:
         for node in range(nodes):
             for axis in range(3):
                 wanted = reference[rate, axis, node]
+                weights = upright if axis == 2 else level
                 for move in range(moves):  # innermost, since only sums that are apart are computed side by side
                     slopes[axis, move] -= weights[3 + rate * nodes + node, move] * wanted
     return slopes
 
 
-def make_axis_cost(model: AxisModel, config: MpcConfig) -> AxisCost:
-    """Return the constant matrices for `model` with the weights of `config`."""
-    forced = np.concatenate((model.forced_p, model.forced_v, model.forced_a))
+def make_axis_cost(model: AxisModel, config: MpcConfig, following: Following | None = None) -> AxisCost:
+    """Return the constant matrices for `model` with the weights of `config`.
+
+    Args:
+        model: the predictions of a plan.
+        config: the weights.
+        following: of the drone whose position and velocity are weighed; None weighs the plan's own.
+    """
+    off, faster = (0.0, 0.0) if following is None else deviations(following, model.node_s, model.move_s)
+    forced = np.concatenate((model.forced_p + off, model.forced_v + faster, model.forced_a))
     free = np.concatenate((model.free_p, model.free_v, model.free_a))
     weight = _cost_of_states(model, config)
     move_weight = config.jerk_weight * model.move_s

@@ -12,6 +12,7 @@ import numpy as np
 from msgspec import Struct
 
 from companion.core.data import Array, FlightLimits
+from companion.planning.following import Following
 from link.records import replace
 
 
@@ -55,6 +56,8 @@ class PlanRequest(Struct, frozen=True, kw_only=True, eq=False):
         touched_enu_m: (n,) in place of a floor, where a pad is to be touched: the lowest that the height in W, carried
             on by its rate for `MpcConfig.touch_time_s`, may be. Laws without bounds on a plan pass it over.
         dt_s: control period, after which the next plan is made.
+        following: how the drone deviates from what is planned, beside what the target makes up for already; None where
+            it follows at once. Only the default law takes it into account.
     """
 
     state: ReferenceState
@@ -63,6 +66,7 @@ class PlanRequest(Struct, frozen=True, kw_only=True, eq=False):
     floor_enu_m: Array
     dt_s: float
     touched_enu_m: Array | None = None
+    following: Following | None = None
 
 
 class Trajectory(Struct, frozen=True, kw_only=True, eq=False):

@@ -15,6 +15,7 @@ from companion.core.data import Array
 from companion.planning.axis_qp import forced_response, free_response, make_axis_cost, make_axis_model
 from companion.planning.brake import brake
 from companion.planning.constraints import level_hessian, level_rows, vertical_hessian, vertical_rows
+from companion.planning.following import Following
 from companion.planning.guidance import (
     PlanRequest,
     PlanResult,
@@ -25,7 +26,7 @@ from companion.planning.guidance import (
     limits_of,
     with_finite_state,
 )
-from companion.planning.programmes import Numbers, PlainLimits, Posed, Statics, plan_of, pose
+from companion.planning.programmes import Numbers, PlainLimits, Posed, plan_of, pose
 from companion.planning.qp import Programme, make_solver
 from companion.planning.resample import make_resampler
 
@@ -38,7 +39,8 @@ class Mpc:
         model = make_axis_model(np.array(config.moves_s), config.node_spacing_max_s)
         self._touch_time_s = float(config.touch_time_s)
         cost = make_axis_cost(model, config)
-        self._level = Programme(solver, level_hessian(cost, config.slack_weight), level_rows(model))
+        self._solver, self._config, self._model = solver, config, model
+        self._level = lru_cache(maxsize=16)(self._make_level)
         upright = vertical_hessian(cost, config.slack_weight)
         self._above, self._onto = (
             Programme(solver, upright, vertical_rows(model, lead_s)) for lead_s in (0.0, self._touch_time_s)
@@ -52,7 +54,8 @@ class Mpc:
             intercept_time_min_s=config.intercept_time_min_s,
             slack_weight=config.slack_weight,
         )
-        self._statics: Statics = (grid, model.end_node, (*numbers,), cost.weights)
+        self._upright = cost.weights
+        self._statics = (grid, model.end_node, (*numbers,))
 
     def plan(self, memory: ReferenceState | None, request: PlanRequest) -> tuple[ReferenceState, PlanResult]:
         """Return the next state as memory, and the plan."""
@@ -64,10 +67,17 @@ class Mpc:
         result = brake(request, PlanStatus.FAILED, 0) if posed is None else self._plan(request, posed)
         return result.next_state, result
 
+    def _make_level(self, following: Following | None) -> tuple[Programme, Array]:
+        """Return the programme of both horizontal axes for a drone, and the weights of its linear terms."""
+        cost = make_axis_cost(self._model, self._config, following)
+        hessian = level_hessian(cost, self._config.slack_weight)
+        return Programme(self._solver, hessian, level_rows(self._model)), cost.weights
+
     def _pose(self, request: PlanRequest, limits: PlainLimits) -> Posed | None:
         """Return the problem of a plan; None where the request is not finite."""
         state, resampler = request.state, make_resampler(request.target.offset_s, self._nodes_s)
-        posed = np.empty((5, 3)), self._level.blank(), self._above.blank()
+        level, weights = self._level(request.following)
+        posed = np.empty((5, 3)), level.blank(), self._above.blank()
         floor_enu_m, lead_s = request.floor_enu_m, 0.0
         if request.touched_enu_m is not None:
             floor_enu_m, lead_s = request.touched_enu_m, self._touch_time_s
@@ -77,7 +87,7 @@ class Mpc:
             lead_s,
             limits,
             (resampler.left, resampler.weights),
-            self._statics,
+            (*self._statics, (weights, self._upright)),
             posed,
         )
         return posed if is_finite else None
@@ -85,7 +95,8 @@ class Mpc:
     def _plan(self, request: PlanRequest, posed: Posed) -> PlanResult:
         """Return the plan of a request without NaN."""
         frame, level, vertical = posed
-        status, moves, iterations = self._level.solve(level)
+        programme, _ = self._level(request.following)
+        status, moves, iterations = programme.solve(level)
         if moves is None:
             return brake(request, status, iterations)
         upright = self._above if request.touched_enu_m is None else self._onto

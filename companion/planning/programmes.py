@@ -68,9 +68,10 @@ PlainLimits = tuple[float, float, float, float, float, float, float]
 PlainGrid = tuple[Array, Array, Array]
 """`Grid` as a plain tuple."""
 
-Statics = tuple[PlainGrid, NDArray[np.int64], tuple[float, float, float, float], Array]
-"""What all plans of a law have in common: `Grid` as a plain tuple, the places (m + 1,) of now and of the blocks' ends
-among its nodes, `Numbers` as a plain tuple, and the weights of the linear terms as `AxisCost` has them."""
+Statics = tuple[PlainGrid, NDArray[np.int64], tuple[float, float, float, float], tuple[Array, Array]]
+"""What all plans of a law for an autopilot have in common: `Grid` as a plain tuple, the places (m + 1,) of now and of
+the blocks' ends among its nodes, `Numbers` as a plain tuple, and the weights of the linear terms as `AxisCost` has
+them, of the horizontal axes and of the vertical one."""
 
 Posed = tuple[Array, Problem, Problem]
 """The problem of a plan in turned axes: the frame, the programme of both horizontal axes and that of the vertical one.
@@ -136,7 +137,7 @@ def pose(
     jerk = mean_jerks(turned[2], statics[1], grid.move_s)
     norms = (most.speed_m_s, most.acceleration_m_s2, most.jerk_m_s3)
     vertical = (most.descent_m_s, most.climb_m_s, most.vertical_acceleration_m_s2, most.vertical_jerk_m_s3)
-    slopes = slopes_of(statics[3], x, reference, jerk)
+    slopes = slopes_of(statics[3][0], statics[3][1], x, reference, jerk)
     put_linear(level[0], slopes[:2], numbers.slack_weight)
     put_linear(upright[0], slopes[2:], numbers.slack_weight)
     level_bounds(x, norms, end_s, level[1:])

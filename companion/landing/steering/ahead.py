@@ -70,33 +70,33 @@ def _between(values: Array, share: float) -> Array:
 
 def make_up(
     target: Target,
-    chase: FlownPlan | None,
+    start: ReferenceState,
     tracking: Tracking,
     response: ResponseModel,
     *,
     late_s: float,
     ahead_s: float,
+    planner_foresees: bool = True,
 ) -> Target:
     """Return where the virtual model is wanted, so that the drone, which will be off it, is where the target is.
 
-    What the drone lags is foreseen along the target's way. Foreseen along the last plan, each plan would make up for
-    what the one before it was going to: over a link that jitters a drone swung by 3 m about a car on a straight road.
-    In a chase it is the plan that accelerates, and a drone whose lag on it is not foreseen flies past the pad.
+    The drone's deviation is foreseen for a model that goes on with the acceleration that it begins with: what its moves
+    add to that is the planner's to foresee (`PlanRequest.following`). For one that does not, the model goes the
+    target's way: foreseen along the last plan, each plan would make up for what the one before it was going to.
 
     Args:
         target: of the drone.
-        chase: the newest plan of a chase; None in any other phase.
+        start: the model at the target's first offset, where the plan begins.
         tracking: with the deviation at the time of the newest report.
         response: of the autopilot.
         late_s: since that report.
         ahead_s: from now to the target's first offset.
+        planner_foresees: as said above.
     """
-    then = response.carry(tracking.deviation, min(late_s, BREAK_S) + ahead_s)
-    accelerates = target.acceleration_enu_m_s2[:, :2]
-    if chase is not None:
-        offset_s, planned = chase.trajectory.offset_s, chase.trajectory.acceleration_enu_m_s2
-        accelerates = np.column_stack([np.interp(target.offset_s, offset_s, planned[:, axis]) for axis in (0, 1)])
-    deviation = response.predict(then, accelerates)[:, :2]
+    accelerates = start.acceleration_enu_m_s2[:2]
+    then = response.carry(tracking.deviation, accelerates, min(late_s, BREAK_S) + ahead_s)
+    way = np.tile(accelerates, (len(target.offset_s), 1)) if planner_foresees else target.acceleration_enu_m_s2[:, :2]
+    deviation = response.predict(then, way)[:, :2]
     position, velocity = target.position_enu_m.copy(), target.velocity_enu_m_s.copy()
     position[:, :2] -= deviation[:, 0]
     velocity[:, :2] -= deviation[:, 1]

@@ -78,7 +78,7 @@ def deviation_now(memory: StepMemory, inputs: StepInputs, pad: PadPath) -> Array
     is_led = inputs.response.cascade.is_led
     if tracking.compared_ns is not None:
         late_s = (inputs.monotonic_ns - tracking.compared_ns) * 1e-9
-        state = inputs.response.carry(tracking.deviation, min(late_s, _REPORT_AGE_MAX_S))
+        state = inputs.response.carry(tracking.deviation, leans_m_s2, min(late_s, _REPORT_AGE_MAX_S))
     elif not is_led:
         state[2] = leans_m_s2
     if is_led:

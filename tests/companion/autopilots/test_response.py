@@ -55,8 +55,9 @@ def test_prediction_solves_the_differential_equation(model: ResponseModel) -> No
 
 
 def test_carried_state_is_the_predicted_one(model: ResponseModel) -> None:
-    expected = model.predict(STATE, np.zeros((len(OFFSET_S), 2)))[1]
-    np.testing.assert_allclose(model.carry(STATE, 0.2), expected, atol=3e-3)
+    accelerates = np.array([0.8, -0.6])
+    expected = model.predict(STATE, np.tile(accelerates, (len(OFFSET_S), 1)))[1]
+    np.testing.assert_allclose(model.carry(STATE, accelerates, 0.2), expected, atol=5e-3)
 
 
 def test_steady_path_makes_no_deviation(model: ResponseModel) -> None:
@@ -77,7 +78,7 @@ def drone(
     forgets_hz = model.cascade.integral_per_s2 / model.cascade.velocity_per_s
     state, states, reports = np.zeros((STATES, 1)), [], []
     for _ in range(round(duration_s / dt_s)):
-        state = model.carry(state, dt_s)
+        state = model.carry(state, np.zeros(1), dt_s)
         state[3] += random.normal() * push_std_m_s2 * np.sqrt(2.0 * forgets_hz * dt_s)
         states.append(state[:, 0].copy())
         reports.append(state[:2, 0] + random.normal(size=2) * (POSITION_STD_M, VELOCITY_STD_M_S))

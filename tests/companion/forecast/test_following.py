@@ -8,8 +8,9 @@ from companion.config.planning import MpcConfig
 from companion.core.data import GRAVITY_M_S2, Array, FlightLimits
 from companion.forecast import steering
 from companion.forecast.samples import DT_S, Follower
+from companion.landing.steering.ahead import make_up
 from companion.landing.steering.targets import HORIZON_OFFSETS_S
-from companion.landing.steering.virtual_model import response_to
+from companion.landing.steering.virtual_model import Tracking, response_to
 from companion.landing.touchdown.rollout_inputs import way_time_s
 from companion.planning.guidance import PlanRequest, ReferenceState, Target
 from companion.planning.mpc import Mpc
@@ -54,25 +55,23 @@ def flown(model: Array, deviation: Array, response: ResponseModel, limits: Fligh
     state = ReferenceState(
         position_enu_m=np.array([p[0], 0.0, HEIGHT_M]), velocity_enu_m_s=np.array(v), acceleration_enu_m_s2=np.array(a)
     )
-    off, planned, found = np.column_stack((deviation, np.zeros(STATES))), np.zeros((count, 2)), []
+    off, found = np.column_stack((deviation, np.zeros(STATES))), []
     for _ in range(round(LASTS_S / PERIOD_S)):
         found.append((state.position_enu_m[0] + off[0, 0], state.velocity_enu_m_s[0] + off[1, 0]))
-        place, rate = np.zeros((count, 3)), np.zeros((count, 3))
+        place, still = np.zeros((count, 3)), np.zeros((count, 3))
         place[:, 2] = HEIGHT_M
-        foreseen = response.predict(off, planned)
-        place[:, :2], rate[:, :2] = -foreseen[:, 0], -foreseen[:, 1]
-        target = Target(
-            offset_s=HORIZON_OFFSETS_S,
-            position_enu_m=place,
-            velocity_enu_m_s=rate,
-            acceleration_enu_m_s2=np.zeros((count, 3)),
+        pad = Target(
+            offset_s=HORIZON_OFFSETS_S, position_enu_m=place, velocity_enu_m_s=still, acceleration_enu_m_s2=still
         )
-        floor = np.full(count, -1e3)
-        _, result = MPC.plan(
-            None, PlanRequest(state=state, target=target, limits=limits, floor_enu_m=floor, dt_s=PERIOD_S)
+        request = PlanRequest(
+            state=state,
+            target=make_up(pad, state, Tracking(deviation=off, compared_ns=0), response, late_s=0.0, ahead_s=0.0),
+            limits=limits,
+            floor_enu_m=np.full(count, -1e3),
+            dt_s=PERIOD_S,
+            following=response.following,
         )
-        path = result.trajectory
-        planned[:, 0] = np.interp(HORIZON_OFFSETS_S + PERIOD_S, path.offset_s, path.acceleration_enu_m_s2[:, 0])
+        _, result = MPC.plan(None, request)
         mean = 0.5 * (state.acceleration_enu_m_s2[0] + result.next_state.acceleration_enu_m_s2[0])
         off, state = one_step.predict(off, np.array([[mean, 0.0], [0.0, 0.0]]))[1], result.next_state
     return np.array(found)

@@ -40,7 +40,7 @@ def pushed(std_m_s2: float, noise: float, seed: int) -> Gusts:
     new_m_s2 = std_m_s2 * math.sqrt(1.0 - math.exp(-2.0 * REPORT_S * forgets_hz))
     errs = noise * np.array([[POSITION_STD_M], [VELOCITY_STD_M_S]])
     for report in range(6000):
-        truth = RESPONSE.carry(truth, REPORT_S)
+        truth = RESPONSE.carry(truth, np.zeros(2), REPORT_S)
         truth[3] += new_m_s2 * rng.standard_normal(2)
         state = RESPONSE.update(state, truth[:2] + errs * rng.standard_normal((2, 2)), np.zeros(2), REPORT_S)
         gusts = update_gusts(gusts, round(report * REPORT_S * 1e9), state, np.zeros(2), RESPONSE)

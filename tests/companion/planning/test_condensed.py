@@ -2,10 +2,14 @@ import numpy as np
 import pytest
 from scipy.integrate import trapezoid
 
+from companion.autopilots.ardupilot import ArduPilotDriver
 from companion.config.planning import MpcConfig
 from companion.core.data import Array
+from companion.landing.steering.virtual_model import response_to
 from companion.planning.axis_qp import AxisModel, make_axis_cost, make_axis_model, slopes_of, terminal_cost
+from companion.planning.following import Following, deviations
 
+LAGS = response_to(ArduPilotDriver().cascade({})).following
 MOVES_S: Array = np.array([0.02, 0.05, 0.13, 0.37, 0.61])
 
 
@@ -40,11 +44,12 @@ def test_the_nodes_hold_all_ends_of_blocks_and_no_wide_gap() -> None:
     assert np.diff(model.node_s, prepend=0.0).max() <= 0.16 + 1e-12
 
 
+@pytest.mark.parametrize("following", [None, LAGS], ids=["follows at once", "lags"])
 @pytest.mark.parametrize("axis", range(3))
-def test_the_programme_costs_what_a_rollout_costs(axis: int) -> None:
+def test_the_programme_costs_what_a_rollout_costs(axis: int, following: Following | None) -> None:
     config = MpcConfig()
     model = make_axis_model(np.array(config.moves_s), config.node_spacing_max_s)
-    constant = make_axis_cost(model, config)
+    constant = make_axis_cost(model, config, following)
     rng = np.random.default_rng(5)
     u = 5.0 * rng.normal(size=len(config.moves_s))
     states, references, jerks = (rng.normal(size=(3, 3, *rest)) for rest in ((), (len(model.node_s),), (len(u),)))
@@ -52,13 +57,16 @@ def test_the_programme_costs_what_a_rollout_costs(axis: int) -> None:
 
     def cost(moves: Array) -> float:
         error = rolled_out(model, x, moves) - reference.T
+        if following is not None:
+            off, faster = deviations(following, model.node_s, model.move_s)
+            error += np.stack((off @ moves, faster @ moves, np.zeros(len(error))), axis=1)
         weights = np.array([config.position_weight, config.velocity_weight, config.acceleration_weight])
         running = (error**2) @ weights
         integral = trapezoid(running, model.node_s) + running[0] * model.node_s[0] / 2.0  # the part from now is fixed
         effort = config.jerk_weight * ((moves - jerk) ** 2) @ model.move_s
         return float(0.5 * (integral + effort + error[-1] @ terminal_cost(config) @ error[-1]))
 
-    slopes = slopes_of(constant.weights, states, references, jerks[0])[axis]
+    slopes = slopes_of(constant.weights, constant.weights, states, references, jerks[0])[axis]
     quadratic = 0.5 * u @ constant.H @ u + slopes @ u
     assert quadratic == pytest.approx(cost(u) - cost(np.zeros_like(u)), rel=1e-9)
 

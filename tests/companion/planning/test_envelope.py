@@ -107,7 +107,7 @@ def test_vertical_rows_hold_exactly_where_the_plan_keeps_to_its_limits(lead_s: f
 def test_kernels_are_their_python() -> None:
     rng = np.random.default_rng(11)
     weights = make_axis_cost(MODEL, CONFIG).weights
-    term = (weights, *(rng.standard_normal((3, *rest)) for rest in ((3,), (3, NODES), (MOVES,))))
+    term = (weights, 0.5 * weights, *(rng.standard_normal((3, *rest)) for rest in ((3,), (3, NODES), (MOVES,))))
     np.testing.assert_allclose(slopes_of(*term), slopes_of.py_func(*term), rtol=1e-12, atol=1e-12)
     for size in (0.1, 1.0, 10.0):
         state = size * rng.standard_normal((3, 3))

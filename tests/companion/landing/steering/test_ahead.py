@@ -13,14 +13,13 @@ from companion.autopilots.response import STATES
 from companion.core.data import Array
 from companion.landing.state.step_data import LinkDelay, StepInputs
 from companion.landing.steering.ahead import make_up, shift_aim
-from companion.landing.steering.flown_plan import FlownPlan
 from companion.landing.steering.targets import HORIZON_OFFSETS_S, Aim
 from companion.landing.steering.virtual_model import Tracking
-from companion.planning.guidance import Target, Trajectory
+from companion.planning.guidance import ReferenceState, Target
 from companion.situation.phases import Phase
 from link.messages import Command
 from link.records import replace
-from tests.companion.world import CONFIG, UTC_AHEAD_NS, Flight, response_of
+from tests.companion.world import UTC_AHEAD_NS, Flight, response_of
 
 LAST_S = float(HORIZON_OFFSETS_S[-1])
 shifts = st.floats(0.0, 0.8)
@@ -75,27 +74,26 @@ def test_drone_that_lags_meets_its_target_by_what_the_model_is_led_to(driver: Px
     response, target = response_of(driver), _aim().target
     deviation = np.array([[0.4, 0.0], [-0.2, 0.1], [0.3, 0.0], [0.2, -0.5]])
     assert deviation.shape == (STATES, 2)
-    led = make_up(target, None, Tracking(deviation=deviation, compared_ns=0), response, late_s=0.05, ahead_s=0.1)
-    then = response.carry(deviation, 0.15)
-    off = response.predict(then, target.acceleration_enu_m_s2[:, :2])
+    start = ReferenceState(
+        position_enu_m=np.zeros(3), velocity_enu_m_s=np.zeros(3), acceleration_enu_m_s2=np.array([2.0, -1.0, 0.5])
+    )
+    accelerates = np.array([2.0, -1.0])
+    led = make_up(target, start, Tracking(deviation=deviation, compared_ns=0), response, late_s=0.05, ahead_s=0.1)
+    then = response.carry(deviation, accelerates, 0.15)
+    off = response.predict(then, np.tile(accelerates, (len(HORIZON_OFFSETS_S), 1)))
     np.testing.assert_allclose(led.position_enu_m[:, :2] + off[:, 0], target.position_enu_m[:, :2], atol=1e-4)
     np.testing.assert_allclose(led.velocity_enu_m_s[:, :2] + off[:, 1], target.velocity_enu_m_s[:, :2], atol=1e-4)
     np.testing.assert_array_equal(led.position_enu_m[:, 2], target.position_enu_m[:, 2])
 
 
-def test_lag_in_a_chase_is_that_on_the_chases_own_plan() -> None:
+def test_for_a_planner_that_foresees_no_lag_it_is_that_along_the_targets_way() -> None:
     response, target = response_of(ArduPilotDriver()), _aim().target
-    planned = np.outer(np.ones(3), [5.0, -3.0, 1.0])
-    trajectory = Trajectory(
-        offset_s=np.array([0.0, 2.0, 9.0]),
-        position_enu_m=planned,
-        velocity_enu_m_s=planned,
-        acceleration_enu_m_s2=planned,
+    still = ReferenceState(
+        position_enu_m=np.zeros(3), velocity_enu_m_s=np.zeros(3), acceleration_enu_m_s2=np.array([4.0, 3.0, 0.0])
     )
-    limits = CONFIG.limits.flight_limits()
-    plan = FlownPlan(starts_ns=0, trajectory=trajectory, lowest_enu_m=0.0, shaping=None, limits=limits)
-    led = make_up(target, plan, Tracking(compared_ns=0), response, late_s=0.0, ahead_s=0.0)
-    off = response.predict(np.zeros((STATES, 2)), planned[[0] * len(HORIZON_OFFSETS_S), :2])
+    tracking = Tracking(compared_ns=0)
+    led = make_up(target, still, tracking, response, late_s=0.0, ahead_s=0.0, planner_foresees=False)
+    off = response.predict(np.zeros((STATES, 2)), target.acceleration_enu_m_s2[:, :2])
     np.testing.assert_allclose(led.position_enu_m[:, :2] + off[:, 0], target.position_enu_m[:, :2])
 
 
