@@ -19,8 +19,7 @@ from companion.landing.steering.sway import update_sway
 from companion.landing.steering.targets import Aim, hover_aim, is_at_rest, pad_aim, stopping_point
 from companion.landing.steering.virtual_model import Tracking, add_to_past, state_then
 from companion.landing.touchdown.levelling import levelled, levelling_now, limit_tilt
-from companion.planning.following import Following
-from companion.planning.guidance import PlanRequest, PlanResult, ReferenceState, Target
+from companion.planning.guidance import PlanRequest, PlanResult, ReferenceState
 from companion.situation.phases import FLYING_PHASES, LANDING_PHASES, STATION_PHASES, Phase
 from companion.situation.situation import Drone, Situation
 from companion.vehicle.pad import PadPath
@@ -92,16 +91,15 @@ def fly(
     if is_at_rest(start, aim):  # there is nothing to plan
         tracking = add_to_past(tracking, max(starts_ns, reference_ns), start)
         return replace(memory, model=replace(model, reference_ns=reference_ns, plan=None, tracking=tracking)), None
-    target, following = _for_the_drone(aim.target, start, memory, inputs, system.config)
     request = PlanRequest(
         state=start,
-        target=target,
-        following=following,
+        target=aim.target,
         limits=limits,
         floor_enu_m=aim.floor_enu_m,
         touched_enu_m=aim.touched_enu_m,
         dt_s=period_s,
     )
+    request = _for_the_drone(request, memory, inputs, system.config.guidance.kind, ahead_s=ahead_s)
     request = replace(request, limits=limit_tilt(request, model.tracking.holds_enu_m_s2))
     guidance, plan = system.guidance.plan(model.guidance, request)
     flown = flown_plan(plan, period_s, float(aim.floor_enu_m[0]), inputs.shaping, limits, starts_ns=starts_ns)
@@ -146,23 +144,23 @@ def _late_s(model: ModelMemory, monotonic_ns: int, period_s: float) -> float:
 
 
 def _for_the_drone(
-    target: Target, start: ReferenceState, memory: StepMemory, inputs: StepInputs, config: CompanionConfig
-) -> tuple[Target, Following | None]:
-    """Return where the virtual model is wanted, so that the drone is where the target is, and how that will follow."""
+    request: PlanRequest, memory: StepMemory, inputs: StepInputs, kind: GuidanceKind, *, ahead_s: float
+) -> PlanRequest:
+    """Return the request for a plan by which the drone, not the virtual model, is where the target is."""
     tracking, response = memory.model.tracking, inputs.response
     if memory.progress.phase not in LANDING_PHASES | STATION_PHASES or response is None or tracking.compared_ns is None:
-        return target, None
-    foresees = config.guidance.kind is GuidanceKind.MPC
+        return request
+    foresees = kind is GuidanceKind.MPC
     target = make_up(
-        target,
-        start,
+        request.target,
+        request.state,
         tracking,
         response,
         late_s=(inputs.monotonic_ns - tracking.compared_ns) * 1e-9,
-        ahead_s=inputs.ahead_s(config),
+        ahead_s=ahead_s,
         planner_foresees=foresees,
     )
-    return target, response.following if foresees else None
+    return replace(request, target=target, following=response.following if foresees else None)
 
 
 def _at_drone(

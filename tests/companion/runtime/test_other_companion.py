@@ -6,7 +6,7 @@ from companion.component.identity import heartbeat_state
 from companion.runtime.start_and_handover import OwnStart
 from companion.situation.phases import Phase
 from link.mavlink.codec import MavlinkCodec
-from link.mavlink.dialect import mavlink
+from link.mavlink.dialect import Message, mavlink
 from link.mavlink.peer import LOST_AFTER_NS, companion_heartbeat
 from link.messages import Command
 from tests.companion.peer import Setup
@@ -101,12 +101,17 @@ def test_own_start_that_met_another_companion_does_not_follow_once_that_one_has_
     assert setup.autopilot.setpoints() == []
 
 
-def test_start_is_told_at_once_and_not_with_the_next_second() -> None:
-    setup = ready(IDLE)
+def told_of_start(setup: Setup) -> Message:
+    """The heartbeat that comes within a tenth of a second after a start."""
     setup.node.request(Command.START)
     told = len(setup.autopilot.of_type("HEARTBEAT"))
     setup.run(0.1, setup.fix)
     (heartbeat,) = setup.autopilot.of_type("HEARTBEAT")[told:]
+    return heartbeat
+
+
+def test_start_is_told_at_once_and_not_with_the_next_second() -> None:
+    heartbeat = told_of_start(ready(IDLE))
     assert heartbeat.system_status == mavlink.MAV_STATE_ACTIVE
 
 
@@ -125,10 +130,7 @@ def test_who_still_stands_gives_way_to_one_that_started_at_the_same_moment(after
 
 def test_echo_of_its_own_heartbeat_is_no_other_companion() -> None:
     setup = ready(IDLE)
-    setup.node.request(Command.START)
-    told = len(setup.autopilot.of_type("HEARTBEAT"))
-    setup.run(0.1, setup.fix)
-    (heartbeat,) = setup.autopilot.of_type("HEARTBEAT")[told:]
+    heartbeat = told_of_start(setup)
     setup.node.receive_mavlink(bytes(heartbeat.get_msgbuf()), setup.t_ns)
     setup.run(3.0, setup.fix)
     assert setup.autopilot.armed
