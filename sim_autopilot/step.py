@@ -12,6 +12,7 @@ from link.records import replace
 from sim_autopilot.boot import reboot_if_due
 from sim_autopilot.commands.incoming import take
 from sim_autopilot.commands.origin import step_origin
+from sim_autopilot.core.data import Deck
 from sim_autopilot.core.modes import Event, Mode
 from sim_autopilot.core.parameters import parameter_message
 from sim_autopilot.core.places import near
@@ -162,7 +163,8 @@ def _advance(memory: AutopilotMemory, inputs: AutopilotInputs, config: Autopilot
     error = inputs.own_error
     wind_enu_m_s = inputs.wind_enu_m_s + np.array(memory.tuning.settings.simulation.wind_enu_m_s)
     memory, course = over_target(memory, course, duration_s)
-    plant = fly(memory.plant, course.following, inputs.deck, wind_enu_m_s, plant_config, duration_s, error)
+    deck = inputs.deck if inputs.deck is None else _on_its_road(inputs.deck, memory.world.deck)
+    plant = fly(memory.plant, course.following, deck, wind_enu_m_s, plant_config, duration_s, error)
     east, north, up = wind_enu_m_s.tolist()
     plant = stop_failed(plant, memory.safety.failures)
     now = take_snapshot(plant.state, plant_config.airframe, plant.state.t_ns - memory.boot.start_ns, error)
@@ -171,9 +173,15 @@ def _advance(memory: AutopilotMemory, inputs: AutopilotInputs, config: Autopilot
         plant=plant,
         now=now,
         course=course,
-        world=World(deck=inputs.deck, range_error_m=inputs.range_error_m, wind_enu_m_s=(east, north, up)),
+        world=World(deck=deck, range_error_m=inputs.range_error_m, wind_enu_m_s=(east, north, up)),
         places=replace(memory.places, chart=near(memory.places.chart, now.position_enu_m)),
     )
+
+
+def _on_its_road(deck: Deck, before: Deck | None) -> Deck:
+    """Return the vehicle with the lowest that its road has led so far."""
+    lowest_m = deck.lowest_m if before is None else before.lowest_m
+    return replace(deck, lowest_m=min(lowest_m, float(deck.position_enu_m[2])))
 
 
 def _after_flight(memory: AutopilotMemory) -> AutopilotMemory:

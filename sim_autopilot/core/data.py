@@ -4,6 +4,7 @@ Arrays are float64 and are never written in place. Quaternions are Hamilton, ord
 """
 
 from enum import Enum
+from math import inf
 
 import numpy as np
 from msgspec import Struct
@@ -54,6 +55,7 @@ class Deck(Struct, frozen=True, kw_only=True, eq=False):
         angular_velocity_enu_rad_s: (3,) in W.
         roof_size_m: length (x of V) and width (y of V) of the body.
         roof_height_m: of the roof above `position_enu_m`, along z of V; 0 is a pad on the road.
+        lowest_m: height in W of the lowest road that it has been on.
     """
 
     t_ns: int
@@ -63,6 +65,7 @@ class Deck(Struct, frozen=True, kw_only=True, eq=False):
     angular_velocity_enu_rad_s: Array
     roof_size_m: tuple[float, float]
     roof_height_m: float
+    lowest_m: float = inf
 
 
 class AttitudeTarget(Struct, frozen=True, kw_only=True, eq=False):

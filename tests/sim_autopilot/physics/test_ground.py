@@ -1,4 +1,4 @@
-"""The ground goes along with a road that leads down: for forces, range finder and score."""
+"""The ground goes along with a road that leads down, and stays down behind it: for forces, range finder and score."""
 
 import numpy as np
 import pytest
@@ -35,23 +35,31 @@ PLACES = st.tuples(*4 * [st.floats(-1e4, 1e4)])
 def test_roads_that_do_not_lead_down_leave_the_ground_flat(
     places: tuple[float, float, float, float], road_m: float
 ) -> None:
-    assert ground_height(*places, road_m) == 0.0
+    assert ground_height(*places, road_m, road_m) == 0.0
 
 
 @given(PLACES, st.floats(-1e3, 0.0))
 def test_ground_is_in_a_cutting_above_the_road_but_where_the_drone_starts(
     places: tuple[float, float, float, float], road_m: float
 ) -> None:
-    assert ground_height(*places, road_m) in {0.0, road_m + CUTTING_M}
+    assert ground_height(*places, road_m, road_m) in {0.0, road_m + CUTTING_M}
+
+
+@given(st.floats(-1e3, 0.0), st.floats(0.0, 1e3), st.floats(PASSES_M, 1e3))
+def test_valley_that_the_vehicle_has_left_stays_as_low(low_m: float, rises_m: float, left_m: float) -> None:
+    road_m = low_m + rises_m
+    behind_m = ground_height(FAR_M, 0.0, FAR_M + left_m, 0.0, road_m, low_m)
+    assert behind_m == ground_height(FAR_M, 0.0, FAR_M, 0.0, low_m, low_m)
+    assert ground_height(FAR_M, 0.0, FAR_M, 0.0, road_m, low_m) == ground_height(FAR_M, 0.0, FAR_M, 0.0, road_m, road_m)
 
 
 def test_ground_of_the_start_stays_until_the_road_leads_through_there() -> None:
-    assert ground_height(0.5 * START_M, 0.0, 2.0 * PASSES_M, 0.0, -LOW_M) == 0.0
-    assert ground_height(0.5 * START_M, 0.0, 0.5 * PASSES_M, 0.0, -LOW_M) == CUTTING_M - LOW_M
+    assert ground_height(0.5 * START_M, 0.0, 2.0 * PASSES_M, 0.0, -LOW_M, -LOW_M) == 0.0
+    assert ground_height(0.5 * START_M, 0.0, 0.5 * PASSES_M, 0.0, -LOW_M, -LOW_M) == CUTTING_M - LOW_M
 
 
 def test_drone_stands_on_the_ground_beside_a_road_that_has_led_down() -> None:
-    ground_m = ground_height(FAR_M, 0.0, FAR_M + 5.0, 0.0, -LOW_M)
+    ground_m = ground_height(FAR_M, 0.0, FAR_M + 5.0, 0.0, -LOW_M, -LOW_M)
     assert ground_m == CUTTING_M - LOW_M
     stands = at_rest(CONFIG, (FAR_M, 0.0, ground_m + GEAR_HEIGHT_M))
     flight = flown(CONFIG, stands, lambda _: None, 5.0, deck_at=down_there)
@@ -75,3 +83,9 @@ def test_score_counts_the_ground_where_it_is(above_m: float, *, touches_it: bool
     found = touches(truth_log(drone, vehicle, []), BOX)
     assert found.any.all() == found.any.any() == touches_it
     assert found.height_m.min() == pytest.approx(above_m)
+
+
+def test_score_counts_a_valley_after_the_vehicle_has_left_it() -> None:
+    drone = [body(t_s, (FAR_M, 5.0, 1.0 - LOW_M), STILL) for t_s in TIMES_S]
+    vehicle = [body(t_s, (FAR_M + 4.0 * PASSES_M * i, 0.0, -LOW_M / (1 + i)), STILL) for i, t_s in enumerate(TIMES_S)]
+    assert not touches(truth_log(drone, vehicle, []), BOX).any.any()

@@ -103,7 +103,24 @@ def test_nothing_is_seen_upside_down() -> None:
 def test_ground_beside_a_road_that_leads_down_is_as_low() -> None:
     low_m, away_m = 20.0, 200.0
     deck = replace(a_deck(), position_enu_m=np.array([5.0, away_m, -low_m]))
-    expected_m = 6.0 - ground_height(0.0, away_m, 5.0, away_m, -low_m)
+    expected_m = 6.0 - ground_height(0.0, away_m, 5.0, away_m, -low_m, -low_m)
     model = RangeFinderModel(max_m=100.0)
     assert expected_m > low_m
     assert distance_m(6.0, 0.0, deck, away_m, model=model) == pytest.approx(expected_m, abs=0.01)
+
+
+def test_valley_is_as_far_below_once_the_vehicle_has_left_it() -> None:
+    low_m, away_m = 20.0, 200.0
+
+    def leaves(t_ns: int) -> Deck:
+        passed_s = (t_ns - START_NS) * 1e-9
+        place = (away_m + 1e3 * passed_s, 0.0, min(0.0, 1e2 * passed_s - low_m))
+        return replace(a_deck(), t_ns=t_ns, position_enu_m=np.array(place))
+
+    pilot = Pilot(px4(range_finder=RangeFinderModel(max_m=100.0)), leaves)
+    pilot.run(0.5)
+    deck = pilot.node.memory.world.deck
+    assert deck is not None
+    assert deck.position_enu_m[2] == 0.0
+    expected_m = 6.0 - ground_height(0.0, away_m, away_m + 500.0, 0.0, 0.0, -low_m)
+    assert distance_m(6.0, 0.0, deck, away_m, model=RangeFinderModel(max_m=100.0)) == pytest.approx(expected_m, abs=0.2)
