@@ -38,21 +38,16 @@ class ConeConfig(StrictModel):
 class WaitConfig(StrictModel):
     """Where the drone waits above the pad, and what for.
 
-    It waits beside the cone, too, for a risk that passes (`RiskConfig`), and for its own sway.
+    It waits beside the cone, while it is faster than `abort.near_speed_max_m_s`, for a risk that passes (`RiskConfig`),
+    and for its own sway.
     """
 
     height_m: Positive = 0.85  # a heaving roof and a late stop leave the drone above `abort.near_height_m`
     # Over a pad that only the detector places, which is blind below 0.5 m: what is known late grows old below.
     height_coarse_m: Positive = 0.7
-    # While the vehicle brakes or speeds up harder than this, as the drone must lean for.
-    speed_change_max_m_s2: Positive = 1.2
     # Above this a pad that only the detector places is waited above, too, until it is within the alignment's distance:
     # what is made up for below is speed against the pad at contact, and the detector is blind there.
     centred_height_m: NotNegative = 0.5
-    # Faster than this against the pad it waits there, too, to settle (S2 asks for 0.5 at contact), and faster
-    # than so many standard deviations of the vehicle's velocity, for of a speed that is hardly known nothing is gained.
-    speed_m_s: Positive = 0.4
-    speed_stds: NotNegative = 1.5
 
 
 class RiskConfig(StrictModel):

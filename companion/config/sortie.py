@@ -18,7 +18,7 @@ class LaunchConfig(StrictModel):
     # has levelled out, and turns none of its feet under: feet 0.3 m apart stand within 0.03 m.
     quiet_tilt_max_rad: Annotated[float, Field(gt=0.0, le=0.35)] = 0.09
     quiet_climb_max_m_s: Positive = 0.3  # of the deck: less than half of what a landing's sink may be (S2: 0.7 m/s)
-    quiet_acceleration_max_m_s2: Positive = 1.2  # of the vehicle, horizontally; as `descent.wait.speed_change_max_m_s2`
+    quiet_acceleration_max_m_s2: Positive = 1.2  # of the vehicle, horizontally
     # From the pad's middle, on each axis: as a landing puts it there (docs/worlds.md), or a hand on a marked pad.
     placed_std_m: Positive = 0.1
     quiet_hold_s: NotNegative = 0.5  # half a period of a car's body on its springs, 1 Hz

@@ -47,11 +47,9 @@ class Reason(Enum):
     RETURN_TOO_LONG = "did not come home within {:g} s: it holds"
 
     # A descent stays above the pad for a while.
-    SPEED_CHANGES = "waits above the pad: the vehicle brakes or speeds up"
     NOT_OVER_PAD = "waits above the pad: the drone is not over the pad"
     OFF_CENTRE = "waits above the pad: farther than {:g} m from the pad's centre"
     MOMENT_RISKY = "waits above the pad: a contact would be unsafe with more than {:.0%}"
-    UNSETTLED = "waits above the pad: faster than {:g} m/s against the pad"
 
     # An approach is unsafe, or takes too long.
     OPERATOR_ABORTS = "commanded: abort"

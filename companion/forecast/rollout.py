@@ -35,13 +35,13 @@ _SINKS_M_S = 0.2  # at least, of a drone above the pad that comes to a contact
 
 
 @compiled_kernel
-def _waits(off: Array, along_m_s2: float, height_m: float, rules: Rules) -> bool:
+def _waits(off: Array, height_m: float, rules: Rules) -> bool:
     """Return whether a drone that is seen `off` (2, 2) its pad by so much waits here."""
     if height_m > rules.waits_below_m or height_m <= rules.commits_below_m:
         return False
     beside_m, rate_m_s = math.hypot(off[0, 0], off[0, 1]), math.hypot(off[1, 0], off[1, 1])
     is_beside = beside_m > rules.cone_at_pad_m + rules.cone_slope * height_m
-    return is_beside or rate_m_s > rules.waiting_speed_m_s or abs(along_m_s2) > rules.waiting_brake_m_s2
+    return is_beside or rate_m_s > rules.near_speed_m_s
 
 
 @compiled_kernel
@@ -107,8 +107,7 @@ def _fly(path: Array, samples: Samples, sample: int, descent: Descent, out: Arra
             lean[i] = expected[i] + state[2, i] + held[i]
             held[i] -= drone.forgets_hz * state[3, i] * DT_S
             holds[i] = held[i] - drone.damping_per_s * state[1, i] - drone.stiffness_per_s2 * state[0, i]
-        along_m_s2 = course.along_m_s2[k] + known[2, 0] * cx + known[2, 1] * cy
-        if _waits(off, along_m_s2, height_m, rules):
+        if _waits(off, height_m, rules):
             waited += 1
         if waited * DT_S > rules.waits_max_s or _breaks_off(off, height_m, sink_m_s, rules):
             return

@@ -59,8 +59,6 @@ class Rules(NamedTuple):
     waits_max_s: float
     waits_below_m: float
     commits_below_m: float
-    waiting_speed_m_s: float
-    waiting_brake_m_s2: float
     cone_at_pad_m: float
     cone_slope: float
     near_speed_m_s: float

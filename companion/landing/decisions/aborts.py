@@ -23,7 +23,6 @@ from companion.landing.decisions.conditions import (
     is_vehicle_taken,
     tell_taken,
 )
-from companion.landing.steering.targets import changes_speed
 from companion.situation.phases import LANDING_PHASES, NEAR_PHASES, Phase
 from companion.situation.situation import Approach, Situation
 from companion.vehicle.pad_reach import cone_radius_m, is_unseen, is_vague, over_pad_radius_m
@@ -86,11 +85,6 @@ def is_not_followed(s: Situation, _: CompanionConfig) -> bool:
 
 def _is_beside_cone(a: Approach, c: CompanionConfig) -> bool:
     return a.distance_m > cone_radius_m(a.height_m, a.pad_half_width_m, c)
-
-
-def must_wait(s: Situation, c: CompanionConfig) -> bool:
-    """Return whether a descent is to stay above the pad for now: what a change of the vehicle's speed does, passes."""
-    return strays(s, c) or (s.pad is not None and changes_speed(s.pad, c.descent))
 
 
 def _is_outside_cone(s: Situation, c: CompanionConfig) -> bool:

@@ -4,10 +4,9 @@ import math
 
 from companion.config.companion import CompanionConfig
 from companion.core.reasons import Cause, Reason
-from companion.landing.decisions.aborts import must_wait
+from companion.landing.decisions.aborts import strays
 from companion.landing.state.memory import Progress, StepMemory
 from companion.landing.steering.sway import is_swaying
-from companion.landing.steering.targets import changes_speed
 from companion.situation.own_drone import lowest_foot
 from companion.situation.phases import Phase
 from companion.situation.situation import Approach, Situation
@@ -70,13 +69,10 @@ def _find_awaited(memory: StepMemory, situation: Situation, config: CompanionCon
     risk = _find_risk(memory, situation, config)
     if risk is not None:
         return risk
-    if must_wait(situation, config):
-        brakes = situation.pad is not None and changes_speed(situation.pad, config.descent)
-        return Cause(Reason.SPEED_CHANGES if brakes else Reason.NOT_OVER_PAD)
+    if strays(situation, config):
+        return Cause(Reason.NOT_OVER_PAD)
     if _is_off_centre(situation, relative, config):
         return Cause(Reason.OFF_CENTRE, (config.descent.alignment.distance_m,))
-    if _is_unsettled(memory, relative, config):
-        return Cause(Reason.UNSETTLED, (config.descent.wait.speed_m_s,))
     return None
 
 
@@ -88,17 +84,6 @@ def _is_off_centre(situation: Situation, relative: Approach, config: CompanionCo
     if situation.pad is None or not situation.pad.is_coarse or relative.height_m < config.descent.wait.centred_height_m:
         return False
     return relative.distance_m > config.descent.alignment.distance_m
-
-
-def _is_unsettled(memory: StepMemory, relative: Approach, config: CompanionConfig) -> bool:
-    """Return whether the drone has to become slower against the pad first."""
-    return relative.speed_m_s > settled_speed_m_s(memory, config)
-
-
-def settled_speed_m_s(memory: StepMemory, config: CompanionConfig) -> float:
-    """Return up to which speed against the pad a drone counts as settled, as far as that speed is known."""
-    known_m_s = config.descent.wait.speed_stds * memory.vehicle.hindsight.speed_std_m_s
-    return max(config.descent.wait.speed_m_s, known_m_s)
 
 
 def _find_risk(memory: StepMemory, situation: Situation, config: CompanionConfig) -> Cause | None:

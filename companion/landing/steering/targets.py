@@ -27,7 +27,6 @@ _DESCENT_SHARE = 0.5  # of the vertical acceleration; the rest is for following 
 _DESCENT_JERK_MAX_M_S3 = 10.0  # that acceleration within 0.15 s: sooner brings nothing, and who has less needs it all
 _SHORT_SHARE = 0.5  # of the distance at which the alignment begins: a chase that aims shorter might not come there
 _BRAKING_M_S2 = 2.0  # of a drone that stops where it is
-_SLOW_M_S = 0.5  # slower than this a vehicle has no direction to speak of
 _REST_M = 0.005
 _REST_MOTION = 0.01  # m/s and m/s^2
 
@@ -208,17 +207,6 @@ def _height_m(phase: Phase, pad: PadPath, reference: ReferenceState, config: Com
             return 0.0
         case _:
             return chase_height_m(pad, reference, config)
-
-
-def changes_speed(pad: PadPath, config: DescentConfig) -> bool:
-    """Return whether the vehicle brakes or speeds up so hard that the drone would lean against the pad.
-
-    In a curve it leans, too, but that may last; a change of speed passes.
-    """
-    velocity, acceleration = pad.velocity_enu_m_s[0, :2], pad.acceleration_enu_m_s2[0, :2]
-    speed_m_s = math.hypot(*velocity[:2].tolist())
-    along_m_s2 = abs(float(velocity @ acceleration)) / max(speed_m_s, _SLOW_M_S)
-    return along_m_s2 > config.wait.speed_change_max_m_s2
 
 
 def _clearance_m(phase: Phase, pad: PadPath, config: CompanionConfig) -> float:

@@ -10,7 +10,6 @@ from companion.config.companion import CompanionConfig
 from companion.core.data import Array
 from companion.forecast.draws import STEPS_MAX
 from companion.forecast.samples import DT_S, Course, Follower, Rules
-from companion.landing.decisions.waiting import settled_speed_m_s
 from companion.landing.state.memory import StepMemory
 from companion.landing.state.step_data import StepInputs
 from companion.landing.steering.targets import way_down
@@ -197,15 +196,13 @@ def _trails_s(memory: StepMemory, situation: Situation, inputs: StepInputs) -> f
     return pad.mounting.ahead_m / math.copysign(max(abs(ahead_m_s), _STEERS_M_S), ahead_m_s)
 
 
-def rules_of(memory: StepMemory, relative: Approach, inputs: StepInputs, config: CompanionConfig) -> Rules:
+def rules_of(relative: Approach, inputs: StepInputs, config: CompanionConfig) -> Rules:
     """Return what the drone waits for and breaks off on."""
     half_width_m, delay = relative.pad_half_width_m, inputs.link_delay
     return Rules(
         waits_max_s=_WAITS_MAX_S,
         waits_below_m=config.descent.wait.height_m,
         commits_below_m=config.descent.commit_height_m,
-        waiting_speed_m_s=settled_speed_m_s(memory, config),
-        waiting_brake_m_s2=config.descent.wait.speed_change_max_m_s2,
         cone_at_pad_m=cone_radius_at_pad_m(half_width_m, config),
         cone_slope=config.descent.cone.slope,
         near_speed_m_s=config.abort.near_speed_max_m_s,

@@ -41,7 +41,7 @@ def test_break_off_is_a_warning() -> None:
 def test_reasons_that_change_all_the_time_are_told_every_five_seconds_at_most() -> None:
     texts = Texts()
     texts.news("descend: aligned", Phase.DESCEND, STATUS, 0)
-    waits = [replace(STATUS, reason_code=code) for code in ("MOMENT_RISKY", "UNSETTLED")]
+    waits = [replace(STATUS, reason_code=code) for code in ("MOMENT_RISKY", "NOT_OVER_PAD")]
     told = sum(bool(texts.progress(waits[tick // 75 % 2], tick * S // 50)) for tick in range(50 * 60))
     assert 8 <= told <= 12
     flicker = sum(bool(texts.progress(waits[tick % 2], (3000 + tick) * S // 50)) for tick in range(50 * 60))

@@ -102,7 +102,7 @@ def test_an_error_of_the_velocity_keeps_its_deviation_while_it_becomes_another_o
     assert error[0] == pytest.approx([0.1, 0.1])
 
 
-@pytest.mark.parametrize("speed_m_s", [0.41, 0.45])
+@pytest.mark.parametrize("speed_m_s", [RULES.near_speed_m_s + 0.01, RULES.near_speed_m_s + 0.05])
 def test_a_contact_after_a_short_wait_comes_as_much_later(speed_m_s: float) -> None:
     plain, moves = descent(0.8), samples()
     moves.deviation[0, 1] = [speed_m_s, 0.0]  # beside the model, which its gains take away

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from companion.core.reasons import Cause, Reason
-from companion.landing.decisions.aborts import ABORTS, is_not_followed, is_out_of_range, must_wait
+from companion.landing.decisions.aborts import ABORTS, is_not_followed, is_out_of_range, strays
 from companion.landing.decisions.conditions import Condition, cause_of
 from companion.landing.decisions.entries import update_held
 from companion.landing.state.memory import Held
@@ -20,7 +20,6 @@ from link.records import replace
 from tests.companion.facts import (
     CONFIG,
     TICK_NS,
-    braking_pad,
     changed,
     decided,
     drone_at,
@@ -168,12 +167,10 @@ def test_a_committed_descent_turns_back_from_a_risky_contact_or_tries(facts: Sit
         (situation(HIGH_M, cone_radius_m(HIGH_M, HALF_M, CONFIG) + 0.01), True),
         (_moving(CONFIG.abort.near_speed_max_m_s - 0.01), False),
         (_moving(CONFIG.abort.near_speed_max_m_s + 0.01), True),
-        (situation(pad=braking_pad(CONFIG.descent.wait.speed_change_max_m_s2 - 0.01)), False),
-        (situation(pad=braking_pad(CONFIG.descent.wait.speed_change_max_m_s2 + 0.01)), True),
     ],
 )
 def test_descent_waits_for_what_passes(drifting: Situation, wanted: bool) -> None:
-    assert must_wait(drifting, CONFIG) is wanted
+    assert strays(drifting, CONFIG) is wanted
 
 
 @pytest.mark.parametrize(("lost_for_s", "not_followed"), [(0.0, False), (1.9, False), (2.1, True)])
