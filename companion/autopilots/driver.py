@@ -31,6 +31,7 @@ class AutopilotView(Struct, frozen=True, kw_only=True):
     armed: bool
     in_control: bool  # it is in the mode in which it follows the companion's setpoints
     failsafe: bool  # in which it flies by itself
+    mode: int | None = None  # by its own number
     disarm_told: bool = False  # by the last heartbeat, or an order that was accepted: it counts with the next one
     warns: bool = False  # it reports a failsafe, and follows the setpoints on
     overruled: bool = False  # by a failsafe: another mode than was last asked for is flown

@@ -28,6 +28,7 @@ def with_heartbeat(view: AutopilotView, message: Message, driver: Driver) -> Aut
         disarm_told=not is_told_armed,
         refusal=None if armed else view.refusal,
         in_control=in_control,
+        mode=message.custom_mode,
         failsafe=reports and not warns,
         warns=warns,
         restarted=view.restarted and not in_control,
@@ -52,7 +53,7 @@ def with_mode(view: AutopilotView, message: Message, driver: Driver) -> Autopilo
     custom = mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED
     in_control = driver.is_in_control(custom, message.custom_mode)
     overruled = not in_control and driver.is_in_control(custom, message.intended_custom_mode)
-    return replace(view, in_control=in_control, overruled=overruled)
+    return replace(view, in_control=in_control, mode=message.custom_mode, overruled=overruled)
 
 
 def with_landed_state(view: AutopilotView, message: Message) -> AutopilotView:

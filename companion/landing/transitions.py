@@ -193,7 +193,7 @@ def _begin_flight(memory: StepMemory, situation: Situation, config: CompanionCon
     waiting_point = position + np.array([0.0, 0.0, climb_m(float(position[2]), situation, config)])
     return replace(
         memory,
-        control=ControlMemory(driver=memory.control.driver),
+        control=ControlMemory(driver=memory.control.driver, mode_before=situation.autopilot.mode),
         model=model,
         places=replace(memory.places, anchor_enu_m=position, waiting_point_enu_m=waiting_point),
     )

@@ -97,7 +97,8 @@ def _is_committed(s: Situation, config: CompanionConfig) -> bool:
 
 
 def _find_taken_control(phase: Phase, control: ControlMemory, s: Situation) -> Decision | None:
-    if phase not in FLYING_PHASES or not control.was_in_control:
+    is_switched = not s.autopilot.in_control and s.autopilot.mode != control.mode_before  # before it was in control
+    if phase not in FLYING_PHASES or not (control.was_in_control or is_switched):
         return None
     if s.autopilot.failsafe or s.autopilot.overruled:
         return Event.PILOT_TOOK_OVER, Cause(Reason.AUTOPILOT_FAILSAFE)

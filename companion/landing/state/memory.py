@@ -132,11 +132,13 @@ class ControlMemory(Struct, frozen=True, kw_only=True, eq=False):
 
     Attributes:
         driver: the driver's memory.
+        mode_before: of the autopilot as the flight began.
         was_in_control: the autopilot's mode has been the companion's since the start.
         was_armed: and its motors were armed in that mode.
     """
 
     driver: DriverMemory = field(default_factory=DriverMemory)
+    mode_before: int | None = None
     was_in_control: bool = False
     was_armed: bool = False
 
