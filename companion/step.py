@@ -3,16 +3,12 @@
 Pure: the same memory, inputs and system give the same result, in flight, in simulation and in replay.
 """
 
-from companion.autopilots.driver import AutopilotCommand, Desire
 from companion.config.companion import CompanionConfig
 from companion.integrity.heights import is_road_elsewhere, update_ground
 from companion.integrity.vehicle_data import update_course
-from companion.landing.decisions.conditions import HELD_UP, holds
-from companion.landing.decisions.contact import may_force_motors_off
-from companion.landing.decisions.contact_signs import signs_of
 from companion.landing.flying import fly
+from companion.landing.orders import drive
 from companion.landing.outputs import landing_status, news, news_of_sortie, setpoint
-from companion.landing.sortie.events import is_quiet_for_long
 from companion.landing.sortie.phases import over_deck
 from companion.landing.state.memory import ModelMemory, StepMemory, to_present_frame
 from companion.landing.state.step_data import StepInputs, StepOutputs, System
@@ -35,8 +31,6 @@ from companion.situation.situation import Below, Following, Situation, VehicleNe
 from companion.vehicle.pad import PadPath
 from link.frames.rotations import yaw_of
 from link.records import replace
-
-_DISARM_MAX_S = 1.0  # it takes 0.6 s where the plain one is refused; the companion waits for longer before it ends
 
 
 def companion_step(memory: StepMemory, inputs: StepInputs, system: System) -> tuple[StepMemory, StepOutputs]:
@@ -64,7 +58,7 @@ def companion_step(memory: StepMemory, inputs: StepInputs, system: System) -> tu
         vehicle, pad = predict_pad(phase, memory.vehicle, inputs, system)
         memory, situation = replace(memory, vehicle=vehicle), with_pad(situation, pad)
     memory, plan = fly(memory, situation, inputs, system)
-    memory, commands = _drive(memory, situation, inputs, system.config)
+    memory, commands = drive(memory, situation, inputs, system.config)
     outputs = StepOutputs(
         setpoint=setpoint(memory, inputs, situation, system.config, is_planned=plan is not None),
         commands=commands,
@@ -179,63 +173,3 @@ def _ride(memory: StepMemory, situation: Situation, config: CompanionConfig) -> 
     above_m = float(drone.position_enu_m[2] - reference.position_enu_m[2])
     foot_below_m, _ = lowest_foot(drone, config.touchdown)
     return update_ride(ride, situation.monotonic_ns, above_m, foot_below_m)
-
-
-def _drive(
-    memory: StepMemory, situation: Situation, inputs: StepInputs, config: CompanionConfig
-) -> tuple[StepMemory, tuple[AutopilotCommand, ...]]:
-    """Return the memory and the commands that bring the autopilot to what the phase needs."""
-    if inputs.driver is None:
-        return memory, ()
-    driver_memory = memory.control.driver
-    for command, result in inputs.acknowledgements:
-        driver_memory = inputs.driver.acknowledged(driver_memory, command, result)
-    hands_over = inputs.leaving and not _finishes_disarm(memory, situation)
-    desire = _last_desire(memory, situation) if hands_over else _desire(memory, situation, config)
-    driver_memory, commands = inputs.driver.act(driver_memory, inputs.autopilot, desire, inputs.monotonic_ns)
-    if driver_memory is not memory.control.driver:
-        memory = replace(memory, control=replace(memory.control, driver=driver_memory))
-    return memory, commands
-
-
-def _finishes_disarm(memory: StepMemory, situation: Situation) -> bool:
-    """Return whether the motors are being switched off: an autopilot that hovers by itself would leave the pad."""
-    return memory.progress.phase is Phase.TOUCHDOWN and _in_phase_s(memory, situation) < _DISARM_MAX_S
-
-
-def _last_desire(memory: StepMemory, situation: Situation) -> Desire:
-    """Return what is wanted of the autopilot before the companion ends: a hover, but no motors left on on the ground.
-
-    The disarm is a plain one, which an autopilot that has left the ground refuses.
-    """
-    is_on_ground = memory.progress.phase is Phase.TAKEOFF and situation.autopilot.landed is True
-    is_refused = memory.control.driver.disarm_refusals > 0
-    return Desire(armed=False) if is_on_ground and not is_refused else Desire(release=True)
-
-
-def _in_phase_s(memory: StepMemory, situation: Situation) -> float:
-    return (situation.monotonic_ns - memory.progress.since_ns) * 1e-9
-
-
-def _desire(memory: StepMemory, situation: Situation, config: CompanionConfig) -> Desire:
-    progress = memory.progress
-    match progress.phase:
-        case Phase.TAKEOFF:
-            return Desire(control=True, armed=True, takeoff_height_m=config.takeoff.waiting_height_m)
-        case Phase.ON_DECK:
-            is_quiet = is_quiet_for_long(memory.sortie, situation, config)
-            return Desire(control=True, armed=True if is_quiet else None)
-        case Phase.LIFT_OFF:
-            return Desire(takeoff_height_m=config.sortie.launch.clear_height_m, leaves_deck=True)
-        case Phase.TOUCHDOWN:
-            # Without accelerations in its setpoints an autopilot is not pressed down so hard that it would fall.
-            held_up = holds(HELD_UP, progress.held, situation, config) and not config.setpoints.position_only
-            evidence = may_force_motors_off(
-                signs_of(situation, config.touchdown),
-                _in_phase_s(memory, situation),
-                config,
-                stopped_and_held=progress.stopped_by_pad and held_up,
-            )
-            return Desire(armed=False, force_disarm=evidence)
-        case _:
-            return Desire()  # control that was had and is lost is not taken back

@@ -37,6 +37,7 @@ _IDS = 0xFFFF
 _LASTS_NS = 1_000_000_000  # what holds a landing up for less is not told
 _APART_NS = 5_000_000_000
 _WARNED_OF = frozenset({Phase.ABORT, Phase.HOLD, Phase.PILOT, Phase.RALLY})
+_BEGINNINGS = frozenset({Phase.TAKEOFF, Phase.ON_DECK})
 _TOLD_IN = frozenset({Phase.CHASE.value, Phase.ALIGN.value, Phase.DESCEND.value})
 
 
@@ -129,7 +130,7 @@ class MavlinkComponent:
         """
         told_ns = self._other_flies_ns
         phase = memory.progress.phase
-        begins = phase is Phase.TAKEOFF and (not memory.control.driver.arm_asked or view.landed is True)
+        begins = phase in _BEGINNINGS and (not memory.control.driver.arm_asked or view.landed is True)
         gives_way = begins or phase not in FLYING_PHASES
         return gives_way and told_ns is not None and local_ns - told_ns <= LOST_AFTER_NS
 

@@ -159,8 +159,10 @@ def news(before: Progress, now: Progress) -> str | None:
     if now.phase is not before.phase or is_explained:
         return f"{now.phase.value}: {sentence(now.cause)}"
     told = now.obstacle
-    is_new = told is not None and (before.obstacle is None or before.obstacle.reason is not told.reason)
-    return f"{now.phase.value}: {sentence(told)}" if told is not None and is_new else None
+    if told is None:
+        return None
+    said = {cause.reason for cause in (before.obstacle, now.cause) if cause is not None}
+    return None if told.reason in said else f"{now.phase.value}: {sentence(told)}"
 
 
 def news_of_sortie(before: Cause | None, now: Cause | None, phase: Phase) -> str | None:

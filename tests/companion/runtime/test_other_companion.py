@@ -9,9 +9,10 @@ from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import Message, mavlink
 from link.mavlink.peer import LOST_AFTER_NS, companion_heartbeat
 from link.messages import Command
-from tests.companion.peer import Setup
+from tests.companion.peer import POSITION, Setup
 from tests.companion.world import PAD
 
+ARM = mavlink.MAV_CMD_COMPONENT_ARM_DISARM
 FLIES, IDLE = heartbeat_state(Phase.CHASE), heartbeat_state(Phase.IDLE)
 NO_COMPANION_OF_OURS = mavlink.MAV_STATE_ACTIVE, 0  # as MAVROS tells, from the same address
 
@@ -126,6 +127,88 @@ def test_who_still_stands_gives_way_to_one_that_started_at_the_same_moment(after
     setup.run(1.0, setup.fix)
     assert setup.node.phase is Phase.PILOT
     assert len(setup.autopilot.setpoints()) == setpoints
+
+
+def texts(setup: Setup) -> str:
+    """What the node has told ground stations."""
+    return "".join(message.text for message in setup.autopilot.of_type("STATUSTEXT"))
+
+
+def giving_way(*, is_armed_by_pilot: bool = False, command: Command = Command.START) -> Setup:
+    """A node that hears, its drone armed on the ground, that another one has started it at the same moment."""
+    setup = ready(IDLE)
+    setup.autopilot.armed = is_armed_by_pilot
+    setup.run(1.5, setup.fix)
+    setup.node.request(command)
+    setup.run(2.5, setup.fix)
+    assert setup.autopilot.armed
+    hear(setup, FLIES)
+    return setup
+
+
+def test_who_gives_way_stops_the_motors_that_it_has_ordered_on_the_ground_and_says_so_once() -> None:
+    setup = giving_way()
+    setup.run(2.0, setup.fix)
+    assert not setup.autopilot.armed
+    assert texts(setup).count("another companion is there") == 1
+
+
+def test_who_gives_way_while_its_order_to_arm_is_under_way_stops_the_motors() -> None:
+    setup = ready(IDLE)
+    setup.node.request(Command.START)
+    while not setup.autopilot.commands(ARM):
+        setup.run(0.005, setup.fix)
+    assert not setup.node.autopilot.state.view.armed
+    hear(setup, FLIES)
+    setup.run(2.0, setup.fix)
+    assert not setup.autopilot.armed
+
+
+def test_of_two_that_launch_from_a_deck_at_the_same_moment_both_give_way() -> None:
+    def stand() -> None:
+        setup.fix((0.0, 0.0, 0.0))
+
+    setup = Setup(is_component=True)
+    setup.node.receive_pad(PAD)
+    setup.run(3.0, stand)
+    setup.node.request(Command.LAUNCH)
+    setup.run(0.3, stand)
+    assert [reply.accepted for reply in setup.node.take_replies()] == [True]
+    hear(setup, FLIES)
+    setup.run(2.0, stand)
+    assert setup.node.phase is Phase.PILOT
+    assert not setup.autopilot.armed
+
+
+def test_who_gives_way_leaves_motors_that_it_has_not_ordered() -> None:
+    setup = giving_way(is_armed_by_pilot=True)
+    setup.run(2.0, setup.fix)
+    assert setup.node.phase is Phase.PILOT
+    assert setup.autopilot.armed
+
+
+def test_who_has_given_way_leaves_the_motors_to_a_pilot_who_has_changed_the_mode() -> None:
+    setup = giving_way()
+    setup.autopilot.results = {ARM: ()}  # the disarm gets lost
+    setup.run(0.1, setup.fix)
+    setup.autopilot.custom_mode = POSITION
+    setup.run(1.5, setup.fix)
+    told = len(setup.autopilot.commands(ARM))
+    setup.run(2.0, setup.fix)
+    assert len(setup.autopilot.commands(ARM)) == told
+    assert setup.autopilot.armed
+
+
+def test_drone_in_the_air_is_not_disarmed_by_who_gives_way() -> None:
+    setup = ready(IDLE)
+    setup.autopilot.armed, setup.autopilot.landed_state = True, mavlink.MAV_LANDED_STATE_IN_AIR
+    setup.run(1.5, setup.fix)
+    setup.node.request(Command.START)
+    setup.run(1.5, setup.fix)
+    hear(setup, FLIES)
+    setup.run(2.0, setup.fix)
+    assert setup.node.phase is Phase.PILOT
+    assert setup.autopilot.commands(ARM) == []
 
 
 def test_echo_of_its_own_heartbeat_is_no_other_companion() -> None:
