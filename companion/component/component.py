@@ -107,10 +107,11 @@ class MavlinkComponent:
     Args:
         session: by which it sends.
         is_open: it hears ground stations, and tells them more than what is new.
+        dry_run: it flies nothing, whatever the phase.
     """
 
-    def __init__(self, session: MavlinkSession, *, is_open: bool) -> None:
-        self._is_open = is_open
+    def __init__(self, session: MavlinkSession, *, is_open: bool, dry_run: bool) -> None:
+        self._is_open, self._dry_run = is_open, dry_run
         self._session = session
         self._commands = StationCommands()
         self._files = FileServer()
@@ -196,7 +197,7 @@ class MavlinkComponent:
         if not self._is_open:
             self._send([] if outputs.text is None else [cut_text(outputs.text)])
             return
-        self._session.heartbeat.tell(heartbeat_state(phase))
+        self._session.heartbeat.tell(heartbeat_state(phase, dry_run=self._dry_run))
         if outputs.text is not None:
             self._send(self._texts.news(outputs.text, phase, outputs.status, local_ns))
         else:

@@ -60,9 +60,10 @@ class ComputerLoad(Struct, frozen=True, kw_only=True):
     temperature_c: float | None
 
 
-def heartbeat_state(phase: Phase) -> tuple[int, int]:
-    """Return MAV_STATE and custom mode of the heartbeat."""
-    status = mavlink.MAV_STATE_ACTIVE if phase in FLYING_PHASES else mavlink.MAV_STATE_STANDBY
+def heartbeat_state(phase: Phase, *, dry_run: bool = False) -> tuple[int, int]:
+    """Return MAV_STATE and custom mode of the heartbeat; a dry run is in a phase, and flies nothing."""
+    flies = phase in FLYING_PHASES and not dry_run
+    status = mavlink.MAV_STATE_ACTIVE if flies else mavlink.MAV_STATE_STANDBY
     return int(status), PHASE_NUMBERS[phase]
 
 

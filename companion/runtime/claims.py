@@ -33,10 +33,11 @@ class Claims:
         zenoh: to show and see them by.
         keys: of the Zenoh contract.
         begun_ns: when this companion began by its computer's clock.
+        dry_run: it flies nothing, and claims no vehicle.
     """
 
-    def __init__(self, zenoh: Tokens, keys: Keys, begun_ns: int | None = None) -> None:
-        self._zenoh = zenoh
+    def __init__(self, zenoh: Tokens, keys: Keys, begun_ns: int | None = None, *, dry_run: bool = False) -> None:
+        self._zenoh, self._dry_run = zenoh, dry_run
         self._keys = keys
         self._name = f"{time.time_ns() if begun_ns is None else begun_ns:020d}"
         self._companions = zenoh.watch_alive(keys.companion_alive("*"))
@@ -47,7 +48,7 @@ class Claims:
 
     def update(self, phase: Phase, *, armed: bool) -> None:
         """Claim the vehicle while this drone lands there or stands there, and no longer."""
-        lands = phase in FLYING_PHASES or (phase is Phase.SECURED and not armed)
+        lands = not self._dry_run and (phase in FLYING_PHASES or (phase is Phase.SECURED and not armed))
         if lands and self._release is None:
             self._met = self._others()
             self._release = self._zenoh.declare_alive(self._keys.landing_claim(self._keys.drone, self._name))

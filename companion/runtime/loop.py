@@ -80,7 +80,7 @@ class _Loop:
         self._inboxes = [zenoh.subscribe(key, sample_bytes_max=SENSOR_BYTES_MAX) for key in told]
         self._ticks = zenoh.subscribe(keys.clock) if options.use_sim_time else None
         self._alive = zenoh.watch_alive(keys.alive)
-        self._claims = Claims(zenoh, keys)
+        self._claims = Claims(zenoh, keys, dry_run=options.dry_run)
         self._stopping = False
         self._start = OwnStart(wanted=options.start)
         self._is_silent = node.system.config.silent_vehicle is not None

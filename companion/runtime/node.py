@@ -58,7 +58,7 @@ class CompanionNode:
         motion_rate_hz = max(system.config.setpoints.rate_hz, _MOTION_RATE_MIN_HZ)
         self.autopilot = AutopilotLink(session, system.config.autopilot, motion_rate_hz)
         self._dry_run = dry_run
-        self._component = MavlinkComponent(session, is_open=is_component)
+        self._component = MavlinkComponent(session, is_open=is_component, dry_run=dry_run)
         self.commands = StepCommands(self._component)
         self.publisher = StatusPublisher(keys, system.config, is_on=publishes)
         self._limits_wanted = system.config.limits.flight_limits()

@@ -58,6 +58,7 @@ class LoopOptions:
         device: of the MAVLink link, for messages.
         timeout_s: without an autopilot or, with `start`, a vehicle; 0 waits for ever.
         start: start the landing without an operator.
+        dry_run: no setpoints and no commands are sent.
         use_sim_time: follow `{ns}/clock` instead of the system's clock.
         tlog: file to record MAVLink into.
         open_to_strangers: links by which somebody without a key could take part, in words.
@@ -66,6 +67,7 @@ class LoopOptions:
     device: str
     timeout_s: float
     start: bool
+    dry_run: bool
     use_sim_time: bool
     tlog: Path | None
     open_to_strangers: tuple[str, ...] = ()

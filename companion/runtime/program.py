@@ -117,6 +117,7 @@ def _loop_options(asked: Program, *, signs: bool) -> "LoopOptions":
         device=asked.mavlink.mavlink,
         timeout_s=asked.run.timeout,
         start=asked.run.start,
+        dry_run=asked.run.dry_run,
         use_sim_time=asked.run.use_sim_time,
         tlog=asked.record.tlog,
         open_to_strangers=open_links(asked.zenoh, asked.mavlink.mavlink, signs=signs),

@@ -50,6 +50,15 @@ def test_second_companion_of_a_drone_knows_of_the_first_until_that_has_ended(
     soon(sessions[1], lambda: second.rival is None, "the first has gone")
 
 
+def test_dry_run_claims_no_vehicle(sessions: tuple[ZenohSession, ZenohSession]) -> None:
+    dry, lands = Claims(sessions[0], KEYS, 100, dry_run=True), Claims(sessions[0], OTHER, 200)
+    waits = Claims(sessions[1], Keys(drone="drone3"), 300)
+    dry.update(Phase.CHASE, armed=True)
+    lands.update(Phase.CHASE, armed=True)
+    soon(sessions[1], lambda: waits.rival is not None, "the later claim is seen")
+    assert waits.rival == Rival(drone=OTHER.drone, is_this_drone=False)
+
+
 def test_vehicle_is_claimed_while_a_drone_lands_or_stands_there_and_no_longer(
     sessions: tuple[ZenohSession, ZenohSession],
 ) -> None:

@@ -116,6 +116,18 @@ def test_start_is_told_at_once_and_not_with_the_next_second() -> None:
     assert heartbeat.system_status == mavlink.MAV_STATE_ACTIVE
 
 
+def test_dry_run_that_is_started_is_no_companion_that_flies() -> None:
+    dry = Setup(is_component=True, dry_run=True)
+    dry.node.receive_pad(PAD)
+    dry.run(3.0, dry.fix)
+    heartbeat = told_of_start(dry)
+    assert dry.node.phase is Phase.TAKEOFF
+    other = ready((heartbeat.system_status, heartbeat.custom_mode))
+    other.node.request(Command.START)
+    other.run(0.1, other.fix)
+    assert [reply.accepted for reply in other.node.take_replies()] == [True]
+
+
 @pytest.mark.parametrize("after_s", [0.1, 2.5])
 def test_who_still_stands_gives_way_to_one_that_started_at_the_same_moment(after_s: float) -> None:
     setup = ready(IDLE)

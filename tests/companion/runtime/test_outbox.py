@@ -108,7 +108,9 @@ def _signals_as_before(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 def test_loop_turns_on_while_nobody_takes_what_is_published(session: StalledSession) -> None:
     transport = TurnsOnly(session)
     links = Links(keys=Keys(), transport=cast(Transport, transport), zenoh=cast(ZenohSession, session))
-    options = LoopOptions(device="udpin:127.0.0.1:14540", timeout_s=0.0, start=False, use_sim_time=False, tlog=None)
+    options = LoopOptions(
+        device="udpin:127.0.0.1:14540", timeout_s=0.0, start=False, dry_run=False, use_sim_time=False, tlog=None
+    )
     loop.run(build_node(CompanionConfig(), Keys()), links, options)
     assert session.taken
     assert transport.longest_s < LOST_S
