@@ -161,7 +161,7 @@ class Reason(Enum):
     IN_FAILSAFE = "the autopilot is in failsafe"
     RIDES_ALONG = "the drone stands on the vehicle, which drives at {:.1f} m/s: command launch, or stop it first"
     NOT_ON_DECK = "the drone does not stand on the vehicle's pad: command start"
-    STATION_TOO_FAR = "station is {:.1f} m from the pad, sortie.offset_max_m is {:g}: raise it or give a nearer one"
+    STATION_TOO_FAR = "station is {:.6g} m from the pad, sortie.offset_max_m is {:g}: raise it or give a nearer one"
     STATION_IN_VEHICLE = (
         "station is in the vehicle or too low: {:.1f} m or more beside the pad and {:.1f} m or more above it, or {:.1f}"
         " m or more above it anywhere"

@@ -224,4 +224,5 @@ def is_possible(pad: PadGeometry) -> bool:
 def _payload_error(error: ValidationError) -> PayloadError:
     first = error.errors(include_url=False, include_input=False)[0]
     where = ".".join(str(part) for part in first["loc"])
-    return PayloadError(f"{where}: {first['msg']}" if where else first["msg"])
+    why = first["msg"].removeprefix("Value error, ")  # pydantic's, before words of one's own
+    return PayloadError(f"{where}: {why}" if where else why)

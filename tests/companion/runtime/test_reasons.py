@@ -27,6 +27,11 @@ def test_reason_is_found(words: tuple[str, ...], name: str, capsys: pytest.Captu
     assert told(capsys, *words) == [name]
 
 
+def test_station_that_is_absurdly_far_away_is_refused_in_one_readable_line() -> None:
+    assert len(sentence(Cause(Reason.STATION_TOO_FAR, (1.7e308, 100.0)))) < 120
+    assert "100.02 m from" in sentence(Cause(Reason.STATION_TOO_FAR, (100.02, 100.0)))
+
+
 def test_several_names_are_told_in_their_order(capsys: pytest.CaptureFixture[str]) -> None:
     assert told(capsys, "CONTACT", "OFFSET_UNKNOWN") == ["CONTACT", "OFFSET_UNKNOWN"]
 

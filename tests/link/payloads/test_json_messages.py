@@ -145,6 +145,11 @@ def test_what_is_no_command_is_refused(payload: bytes) -> None:
         decode(Order, payload)
 
 
+def test_what_an_order_lacks_is_told_in_our_own_words() -> None:
+    with pytest.raises(PayloadError, match=r"^follow needs offset_m, \[ahead, left, up\] in m$"):
+        decode(Order, b'{"command": "follow"}')
+
+
 @pytest.mark.parametrize(
     "changes",
     [
