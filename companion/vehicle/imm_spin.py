@@ -2,7 +2,7 @@
 
 The model turns by curvature and speed, as a car does: one that stands cannot turn. Tracked and differentially driven
 vehicles do. While a vehicle is slow, a yaw rate that its curve and its sensor's noise do not explain is no curvature,
-which would become absurd, and moves the heading by itself once a second reading has told it: one may be an outlier.
+which would become absurd, and moves the heading by itself once `spin` believes it.
 Left out, the turn that a told heading shows would be taken for an error of the unit.
 """
 
@@ -20,7 +20,7 @@ from companion.vehicle.imm_state import ImmState, is_heading_known
 from companion.vehicle.imm_swing import SIZE
 from companion.vehicle.lever import turned
 from companion.vehicle.small_matrices import carried_through
-from companion.vehicle.spin import passed, told
+from companion.vehicle.spin import compared, passed, told
 from link.records import replace
 
 _STDS = 5.0  # beyond what is expected: noise alone does it once in a million readings
@@ -35,7 +35,8 @@ def without_spin(
 ) -> tuple[ImmState, Measurement | None]:
     """Return the state with how fast the vehicle turns on the spot, and what the measurement tells beside that.
 
-    That is a velocity of an antenna that does not swing round, and nothing where a yaw rate told the turn.
+    That is a velocity of an antenna that does not swing round, and nothing where a yaw rate told the turn, or a heading
+    is to tell whether there is one.
 
     Args:
         state: predicted to the measurement.
@@ -51,6 +52,9 @@ def without_spin(
         if spin.rad_s and not state.spin.is_believed:  # it has turned since the first reading
             state = _turned_for(state, spin.rad_s, spin.told_s, config, numbers)
         return replace(state, spin=spin, turn_age_s=0.0), None if spin_rad_s else measurement
+    if measurement.quantity is Quantity.HEADING and state.spin.told_rad_s:
+        spin = compared(state.spin, float(measurement.value[0]), float(measurement.covariance[0, 0]))
+        return replace(state, spin=spin), None if spin.is_open else measurement
     if measurement.quantity is not Quantity.VELOCITY or state.spin.rad_s == 0.0:
         return state, measurement
     means, _, weights = state.modes

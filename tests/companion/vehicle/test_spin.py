@@ -16,7 +16,7 @@ from companion.vehicle.imm_kernels import HEADING
 from companion.vehicle.imm_numbers import Deck
 from companion.vehicle.imm_spin import spun
 from companion.vehicle.imm_state import ImmState
-from companion.vehicle.spin import Spin
+from companion.vehicle.spin import NO_SPIN, Spin, compared, passed, told
 from link.frames.rotations import wrap_angle
 from link.records import replace
 from tests.companion.vehicle.drives import NOMINAL, Drive, Sensors, drive
@@ -153,6 +153,25 @@ def test_gyro_that_contradicts_a_parked_vehicles_heading_ends_nothing(
     """Such as one that tells degrees for radians."""
     forecasts = parked(lambda _: rate_rad_s, 6.0, seed, gyro_std_rad_s=std_rad_s)
     assert all(np.isfinite(forecast.position_std_m).all() for forecast in forecasts)
+
+
+@pytest.mark.parametrize("rate_rad_s", [1.0, 3.0, 9.0])
+def test_gyro_that_runs_away_for_a_second_leaves_the_told_heading_as_it_was(rate_rad_s: float) -> None:
+    """At 9 rad/s it was 17 degrees off for a minute, and up to 140 meanwhile."""
+    forecasts = parked(lambda t_s: rate_rad_s if 3.0 <= t_s < 4.0 else 0.0, 6.0, 1)[100:]
+    yaws_rad = [wrap_angle(float(one.yaw_rad[0])) for one in forecasts if one.yaw_rad is not None]
+    assert len(yaws_rad) > 0.9 * len(forecasts)
+    assert np.abs(yaws_rad).max() < 0.06
+
+
+@pytest.mark.parametrize("rate_rad_s", [0.5, 3.0, -9.0])
+def test_heading_that_lags_behind_the_gyro_turns_along(rate_rad_s: float) -> None:
+    spin, lags_s = NO_SPIN, 0.08
+    for step in range(100):
+        spin = passed(told(spin, rate_rad_s), 0.02)
+        spin = compared(spin, rate_rad_s * max(0.02 * step - lags_s, 0.0), 0.02**2)
+    assert spin.is_believed
+    assert not spin.is_denied
 
 
 def test_one_yaw_rate_that_no_vehicle_turns_by_is_an_outlier() -> None:
