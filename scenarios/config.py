@@ -9,10 +9,10 @@ from typing import Annotated, Any, Literal, get_args
 from pydantic import Field
 
 from companion.config.companion import CompanionConfig
-from link.messages import PadGeometry, Vector3
+from link.messages import PadGeometry
 from link.program.toml_config import Ascending, Coordinate, NotNegative, Positive, Range, StrictModel
 from scenarios.tracks.config import TrackConfig
-from sim_autopilot.runtime.config import DatumConfig, DroneConfig, RangeEnd
+from sim_autopilot.runtime.config import DatumConfig, DroneConfig, Place, RangeLimits
 
 Share = Annotated[float, Field(ge=0.0, le=1.0)]
 Angle = Annotated[float, Field(ge=-math.pi, le=math.pi)]
@@ -112,12 +112,10 @@ class OwnStateConfig(StrictModel):
     origin_step_at_s: NotNegative | None = None  # since the start; within `disturbed_between_s` where None
 
 
-class RangeConfig(StrictModel):
+class RangeConfig(RangeLimits):
     """The drone's range finder; by default one that is always right."""
 
     white_m: NotNegative = 0.0  # of a reading
-    min_m: RangeEnd = 0.0  # of its range; what is nearer or farther is told as the range's end
-    max_m: RangeEnd = 100.0  # likewise
 
 
 class SensorsConfig(StrictModel):
@@ -209,8 +207,8 @@ class RunConfig(StrictModel):
     start: Literal["instant", "boot"] = "instant"  # of the autopilot in lockstep; over the wire it always boots
     place: Literal["road", "deck"] = "road"  # where the drone stands at first; under one on its deck the vehicle drives
     datum: DatumConfig = DatumConfig()
-    drone_start_enu_m: Vector3 = (0.0, 0.0, 0.0)  # of the point on the road that it stands on
-    waiting_point_enu_m: Vector3 = (0.0, 0.0, 5.0)  # 5 m above the road; source report, section "Task"
+    drone_start_enu_m: Place = (0.0, 0.0, 0.0)  # of the point on the road that it stands on
+    waiting_point_enu_m: Place = (0.0, 0.0, 5.0)  # 5 m above the road; source report, section "Task"
     fence_radius_m: Positive = 3000.0  # horizontal, about the datum
     time_limit_s: Positive = 120.0
     disturbed_between_s: Range = (12.0, 20.0)  # a gust, outage or origin step begins; drawn

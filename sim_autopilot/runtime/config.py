@@ -1,18 +1,18 @@
 """What can be set about `sim-autopilot`: one TOML file, validated once, every value with its unit and source."""
 
 from math import pi
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from link.program.toml_config import Coordinate, NotNegative, Positive, StrictModel
 
 _ALTITUDE_MIN_M, _ALTITUDE_MAX_M = -500.0, 9000.0  # from the shore of the Dead Sea to the highest mountain
 _SPEED_MAX_M_S = 60.0  # of a vehicle on whose deck a drone stands, 216 km/h
 _Speed = Annotated[float, Field(ge=-_SPEED_MAX_M_S, le=_SPEED_MAX_M_S)]
-_Place = tuple[Coordinate, Coordinate, Annotated[float, Field(ge=_ALTITUDE_MIN_M, le=_ALTITUDE_MAX_M)]]
-RangeEnd = Annotated[float, Field(ge=0.0, le=655.0)]
-"""Of a range finder, m: DISTANCE_SENSOR tells centimetres in 16 bits."""
+Place = tuple[Coordinate, Coordinate, Annotated[float, Field(ge=_ALTITUDE_MIN_M, le=_ALTITUDE_MAX_M)]]
+"""In W, m."""
+_RangeEnd = Annotated[float, Field(ge=0.0, le=655.0)]  # DISTANCE_SENSOR tells centimetres in 16 bits
 
 
 class DatumConfig(StrictModel):
@@ -26,7 +26,7 @@ class DatumConfig(StrictModel):
 class StartConfig(StrictModel):
     """Where the drone stands at boot."""
 
-    position_enu_m: _Place = (0.0, 0.0, 0.0)  # of the point under its feet
+    position_enu_m: Place = (0.0, 0.0, 0.0)  # of the point under its feet
     yaw_rad: Annotated[float, Field(ge=-pi, le=pi)] = 0.0
     velocity_enu_m_s: tuple[_Speed, _Speed, _Speed] = (0.0, 0.0, 0.0)  # on the deck of a vehicle that drives
 
@@ -78,12 +78,23 @@ class OwnStateConfig(StrictModel):
     origin_step_s: NotNegative = 0.0  # since boot, when it does
 
 
-class RangeFinderConfig(StrictModel):
+class RangeLimits(StrictModel):
+    """What a range finder can tell; what is nearer or farther is told as the range's end."""
+
+    min_m: _RangeEnd = 0.0
+    max_m: _RangeEnd = 100.0
+
+    @model_validator(mode="after")
+    def _ends_in_order(self) -> Self:
+        if self.min_m >= self.max_m:
+            raise ValueError(f"min_m must be less than max_m, {self.max_m:g}")
+        return self
+
+
+class RangeFinderConfig(RangeLimits):
     """What looks down along the drone's body."""
 
     white_std_m: NotNegative = 0.0  # of a reading
-    min_m: RangeEnd = 0.0  # of its range; what is nearer or farther is told as the range's end
-    max_m: RangeEnd = 100.0  # likewise
 
 
 class VehicleConfig(StrictModel):

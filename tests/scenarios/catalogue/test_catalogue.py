@@ -192,6 +192,14 @@ def test_file_with_a_base_changes_what_it_names(tmp_path: Path) -> None:
             'base = "straight_5"\n[track]\nroad_min_m = 10.0\nroad_s = 1.0\nspeed_m_s = 30.0\n',
             ["too short", "road_min_m"],
         ),
+        (
+            'base = "straight_5"\n[run]\ndrone_start_enu_m = [1e12, 0.0, 0.0]\n',
+            ["run.drone_start_enu_m", "less than or equal to 10000"],
+        ),
+        (
+            'base = "straight_5"\n[sensors.range_finder]\nmin_m = 5.0\nmax_m = 2.0\n',
+            ["sensors.range_finder", "min_m must be less than max_m, 2"],
+        ),
         ('base = "straight"\n', ["'straight'", "'straight_"]),
         ('description = "no track"\n', ["track"]),
         ("speed = = 3\n", ["not valid TOML"]),

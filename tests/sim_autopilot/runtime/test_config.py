@@ -67,6 +67,11 @@ def test_what_no_message_could_tell_is_refused(tmp_path: Path, text: str) -> Non
         loaded(tmp_path, text)
 
 
+def test_a_range_that_ends_before_it_begins_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(UserError, match=r"sim\.toml: .+ min_m must be less than max_m, 1"):
+        loaded(tmp_path, "[range_finder]\nmin_m = 2.0\nmax_m = 1.0")
+
+
 def test_the_wind_blows_away_from_where_it_comes_from(tmp_path: Path) -> None:
     config = loaded(tmp_path, f"[wind]\nmean_m_s = 5.0\nfrom_rad = {pi / 3.0}\n")
     wind = wind_model(config).advance(0.01, 0.0)
