@@ -216,11 +216,11 @@ class _Loop:
 
     def _say_losses(self) -> None:
         """Say once that what is recorded is not complete: nobody sees it in the recording."""
-        lost = self._sent.lost + (self._node.records_lost if isinstance(self._node, RecordingNode) else 0)
-        if lost and not self._losses_told:
-            self._losses_told = True
-            self._log.warning("records are lost: the disk is full or too slow", lost=lost)
-            self._node.warn("does not record: disk full or slow")
+        recorders = (self._sent, self._node) if isinstance(self._node, RecordingNode) else (self._sent,)
+        if (lost := sum(one.records_lost for one in recorders)) and not self._losses_told:
+            why, self._losses_told = next(one.why_lost for one in recorders if one.records_lost), True
+            self._log.warning("records are lost", lost=lost, why=why)
+            self._node.warn(f"does not record: {why}")
 
     def _ask_for_pad(self) -> None:
         """Ask the vehicle for its pad until it has answered, and again when it has come back: it may be another one."""

@@ -81,8 +81,8 @@ def run_program(asked: Program) -> None:
         links = Links(keys=asked.keys, transport=transport, zenoh=zenoh, signing=memory)
         timings = run(node, links, _loop_options(asked, signs=signing is not None))
     if recorder is not None and recorder.dropped:
-        where = "Foxglove's server" if asked.folder is None else f"the disk of {asked.folder}"
-        sys.stderr.write(f"recording: {recorder.dropped} records are lost, {where} is full or too slow\n")
+        where = "Foxglove's server" if asked.folder is None else asked.folder
+        sys.stderr.write(f"recording: {recorder.dropped} records are lost, {where}: {recorder.why_dropped}\n")
     if asked.record.timing is not None:
         _write_timing(asked.record.timing, timings)
 

@@ -75,6 +75,11 @@ class RecordingNode(CompanionNode):
         """How many could not be written."""
         return self._recorder.dropped
 
+    @property
+    def why_lost(self) -> str:
+        """Why the first of them could not be; empty while there is none."""
+        return self._recorder.why_dropped
+
     def receive_mavlink(self, data: bytes, local_ns: int, *, is_datagram: bool = False) -> None:
         """Take bytes of the autopilot's link.
 

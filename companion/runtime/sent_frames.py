@@ -26,9 +26,14 @@ class SentFrames:
         self._tlog = tlog
 
     @property
-    def lost(self) -> int:
+    def records_lost(self) -> int:
         """How many records of the log could not be written."""
         return 0 if self._tlog is None else self._tlog.dropped
+
+    @property
+    def why_lost(self) -> str:
+        """Why the first of them could not be; empty while there is none."""
+        return "" if self._tlog is None else self._tlog.why_dropped
 
     def send(self, frames: Sequence[bytes], local_ns: int, began_s: float) -> None:
         """Send what a turn has made.

@@ -1,12 +1,12 @@
 """Recordings that ground stations read: before each frame, the time in microseconds as 8 bytes, big-endian."""
 
-import os
 import struct
 from pathlib import Path
 from types import TracebackType
 from typing import NamedTuple, Self
 
 from link.errors import UserError
+from link.recording.disk import sync
 from link.recording.file_names import free_path
 from link.units import NS_PER_S
 
@@ -39,9 +39,13 @@ class TlogWriter:
         self._file.write(_TIME.pack(t_ns_utc // 1000) + frame)
 
     def sync(self) -> None:
-        """Has what was written so far on the disk itself, where a power failure leaves it."""
+        """Has what was written so far on the disk itself, as `disk.sync` does.
+
+        Raises:
+            OSError: It is not there.
+        """
         self._file.flush()
-        os.fdatasync(self._file.fileno())
+        sync(self._file.fileno())
 
     def close(self) -> None:
         """Ends the recording."""

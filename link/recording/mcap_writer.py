@@ -4,7 +4,6 @@ What earlier starts have recorded there is never overwritten; it counts, and is 
 Each file is complete in itself: it repeats the metadata, the attachments and the schemas.
 """
 
-import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import partial
@@ -17,6 +16,7 @@ from mcap.writer import CompressionType, Writer
 
 from link.errors import UserError
 from link.payloads.decklander_msgs import RosMessage, definition
+from link.recording.disk import sync
 from link.recording.file_names import present_files, recording_path
 from link.recording.recorder import RecordsLost
 
@@ -29,7 +29,7 @@ class RecordingSpec:
     """What a recording is called, holds beside its messages, and may take.
 
     Attributes:
-        folder: made when it is missing.
+        folder: made when it is missing, also where it was deleted meanwhile.
         stem: of the files' names, `<stem>_000.mcap` and so on (`link.recording.file_names`).
         metadata: such as versions.
         attachments: texts by file name, such as the configuration.
@@ -78,8 +78,8 @@ class _WholeRecords(RawIOBase):
         return len(data)
 
     def sync(self) -> None:
-        """Have what was written on the disk itself, where a power failure leaves it."""
-        os.fdatasync(self._file.fileno())
+        """Have what was written on the disk itself, as `disk.sync` does."""
+        sync(self._file.fileno())
 
     def close(self) -> None:
         """Close the file."""
@@ -147,8 +147,8 @@ class McapFile:
             self._writer.add_message(channel, log_ns, message.payload, log_ns, sequence)
         finally:  # an index that fails comes after its chunk
             if self.size > size:
-                self.pending = 0
                 self._file.sync()
+                self.pending = 0
 
     def finish(self) -> None:
         """Complete the file.
@@ -189,7 +189,6 @@ class McapRecording:
         self._count = self._skip = 0
         self._file: McapFile | None = None
         try:
-            spec.folder.mkdir(parents=True, exist_ok=True)
             earlier = present_files(spec.folder, spec.stem)
             self._start = earlier[-1].start + 1 if earlier else 1
             self._files = [file.path for file in earlier]
@@ -235,6 +234,7 @@ class McapRecording:
             file.finish()
 
     def _next_file(self) -> McapFile:
+        self._spec.folder.mkdir(parents=True, exist_ok=True)
         self._delete_oldest()
         path = recording_path(self._spec.folder, self._spec.stem, self._start, self._count)
         file = McapFile(path, self._spec)

@@ -63,6 +63,10 @@ class Recorder(Protocol):
     def dropped(self) -> int:
         """How many records were not written."""
 
+    @property
+    def why_dropped(self) -> str:
+        """Why the first of them was not; empty while there is none."""
+
     def put(self, record: Any) -> None:
         """Take one record; never raises and never waits for a disk."""
 
@@ -105,6 +109,7 @@ class BackgroundRecorder:
         self._closing = threading.Event()
         self._dropped_full = 0
         self._dropped_failed = 0
+        self._why_dropped = ""
         self._unforeseen_told = False
         self._thread = threading.Thread(target=self._run, name="recorder", daemon=True)
         self._thread.start()
@@ -113,6 +118,11 @@ class BackgroundRecorder:
     def dropped(self) -> int:
         """How many records were not written."""
         return self._dropped_full + self._dropped_failed
+
+    @property
+    def why_dropped(self) -> str:
+        """Why the first of them was not; empty while there is none."""
+        return self._why_dropped
 
     @property
     def waiting(self) -> int:
@@ -131,6 +141,7 @@ class BackgroundRecorder:
                 self._waiting_bytes += size
             else:
                 self._dropped_full += 1
+                self._why_dropped = self._why_dropped or "they come faster than they are taken"
 
     def _has_room(self, size: int) -> bool:
         return len(self._waiting) < self._capacity and self._waiting_bytes + size <= _BYTES_MAX
@@ -168,8 +179,10 @@ class BackgroundRecorder:
             act(*record)
         except _UNWRITABLE as error:
             self._dropped_failed += _count_lost(error)
+            self._why_dropped = self._why_dropped or _told(error)
         except Exception as error:  # noqa: BLE001 (of a library below the sink, which may raise anything)
             self._dropped_failed += 1
+            self._why_dropped = self._why_dropped or f"unforeseen {type(error).__name__}"
             self._tell_unforeseen(type(error).__name__)
 
     def _tell_unforeseen(self, kind: str) -> None:
@@ -185,26 +198,38 @@ class DirectRecorder:
     def __init__(self, sink: Sink) -> None:
         self._sink = sink
         self._dropped = 0
+        self._why_dropped = ""
 
     @property
     def dropped(self) -> int:
         """How many records were not written."""
         return self._dropped
 
+    @property
+    def why_dropped(self) -> str:
+        """Why the first of them was not; empty while there is none."""
+        return self._why_dropped
+
     def put(self, record: Any) -> None:
         """Write one record."""
-        try:
-            self._sink.write(record)
-        except _UNWRITABLE as error:
-            self._dropped += _count_lost(error)
+        self._let(self._sink.write, record)
 
     def close(self) -> None:
         """Complete the recording."""
+        self._let(self._sink.close)
+
+    def _let(self, act: Callable[..., None], *record: Any) -> None:
         try:
-            self._sink.close()
+            act(*record)
         except _UNWRITABLE as error:
             self._dropped += _count_lost(error)
+            self._why_dropped = self._why_dropped or _told(error)
 
 
 def _count_lost(error: Exception) -> int:
     return error.count if isinstance(error, RecordsLost) else 1
+
+
+def _told(error: Exception) -> str:
+    """Return why a record was not written, as the system says it."""
+    return (isinstance(error, OSError) and error.strerror) or str(error)

@@ -33,6 +33,7 @@ class FlownInputs:
     """
 
     dropped = 0
+    why_dropped = ""
 
     def __init__(self, scenario: Scenario, seed: int) -> None:
         self.records: list[InputRecord] = []

@@ -34,6 +34,7 @@ class Log:
     """A recorder that keeps what is put."""
 
     dropped = 0
+    why_dropped = ""
 
     def __init__(self) -> None:
         self.put_in = list[object]()

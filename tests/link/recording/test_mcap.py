@@ -1,6 +1,7 @@
 """Recordings as files: read by an independent reader, cut off anywhere, rotated, and on a disk that is full."""
 
 import os
+import shutil
 from pathlib import Path
 
 import pytest
@@ -119,6 +120,11 @@ def test_limit_of_all_files_counts_those_of_earlier_starts(tmp_path: Path) -> No
     assert min(numbers) > 1
 
 
+def _add(recording: McapRecording, indices: range) -> None:
+    for index in indices:
+        recording.add(_setpoint(index), index)
+
+
 def _lost(recording: McapRecording, indices: range) -> int:
     """Add messages; return how many were lost."""
     lost = 0
@@ -170,6 +176,18 @@ def test_recording_goes_on_once_a_full_disk_has_room_again(tmp_path: Path, monke
     recording.close()
     assert 15_000 < lost < 25_000
     assert sum(1 for _ in read_messages(recording_files(tmp_path, "test"))) == 40_000 - lost
+
+
+def test_recording_whose_folder_is_deleted_says_so_and_begins_it_anew(tmp_path: Path) -> None:
+    folder = tmp_path / "flight"
+    recording = McapRecording(RecordingSpec(folder=folder, stem="test"))
+    recording.add(_setpoint(0), 10**18)
+    shutil.rmtree(folder)
+    with pytest.raises(RecordsLost, match="the file was deleted"):
+        _add(recording, range(1, 10_000))
+    assert _lost(recording, range(5_000)) < 5_000
+    recording.close()
+    assert recording_files(folder, "test")
 
 
 def test_folder_that_cannot_be_made_is_told(tmp_path: Path) -> None:

@@ -69,7 +69,7 @@ def test_recorder_writes_in_order_and_counts_what_cannot_be_written(kind: type[B
         recorder.put(record)
     recorder.close()
     assert sink.written == [1, 2, 3]
-    assert recorder.dropped == 2
+    assert (recorder.dropped, recorder.why_dropped) == (2, "No space left on device")
     assert sink.closed
 
 
