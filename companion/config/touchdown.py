@@ -52,8 +52,8 @@ class TouchdownConfig(StrictModel):
     pressed_speed_m_s: Positive = 0.5
     falling_acceleration_m_s2: Positive = 3.5  # downwards faster than this nothing stands on a pad; half of the presses
     # Horizontally: no flying changes the velocity so fast, and no hold is waited for. Thrust of twice the weight and
-    # drag at 30 m/s are 19.6 + 5.0 m/s^2.
-    jolt_m_s2: Positive = 25.0
+    # drag at 30 m/s are 19.6 + 5.0 m/s^2. A drone that leans by 45 degrees makes 9.81 in any flight.
+    jolt_m_s2: Annotated[float, Field(ge=9.81, le=1e4)] = 25.0
     stopped_hold_s: Positive = 0.3  # after a jolt, pressed down without falling: in the air it would sink at 2 m/s then
     sink_max_m_s: Positive = 0.7  # that the gear takes (S2), of a drone that is pressed down and was still in the air
     # Downwards, at most, while the signs of a contact hold, and once they are believed: nearly the whole weight.
