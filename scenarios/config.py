@@ -12,7 +12,7 @@ from companion.config.companion import CompanionConfig
 from link.messages import PadGeometry
 from link.program.toml_config import Ascending, Coordinate, NotNegative, Positive, Range, StrictModel
 from scenarios.tracks.config import TrackConfig
-from sim_autopilot.runtime.config import DatumConfig, DroneConfig, Place, RangeLimits
+from sim_autopilot.runtime.config import DatumConfig, DroneConfig, Place, RangeEnd, RangeLimits
 
 Share = Annotated[float, Field(ge=0.0, le=1.0)]
 Angle = Annotated[float, Field(ge=-math.pi, le=math.pi)]
@@ -116,6 +116,8 @@ class RangeConfig(RangeLimits):
     """The drone's range finder; by default one that is always right."""
 
     white_m: NotNegative = 0.0  # of a reading
+    min_m: RangeEnd = 0.0  # of its range; what is nearer or farther is told as the range's end
+    max_m: RangeEnd = 100.0  # likewise
 
 
 class SensorsConfig(StrictModel):

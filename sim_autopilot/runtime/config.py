@@ -12,7 +12,8 @@ _SPEED_MAX_M_S = 60.0  # of a vehicle on whose deck a drone stands, 216 km/h
 _Speed = Annotated[float, Field(ge=-_SPEED_MAX_M_S, le=_SPEED_MAX_M_S)]
 Place = tuple[Coordinate, Coordinate, Annotated[float, Field(ge=_ALTITUDE_MIN_M, le=_ALTITUDE_MAX_M)]]
 """In W, m."""
-_RangeEnd = Annotated[float, Field(ge=0.0, le=655.0)]  # DISTANCE_SENSOR tells centimetres in 16 bits
+RangeEnd = Annotated[float, Field(ge=0.0, le=655.0)]
+"""Of a range finder, m: DISTANCE_SENSOR tells centimetres in 16 bits."""
 
 
 class DatumConfig(StrictModel):
@@ -79,10 +80,10 @@ class OwnStateConfig(StrictModel):
 
 
 class RangeLimits(StrictModel):
-    """What a range finder can tell; what is nearer or farther is told as the range's end."""
+    """A range finder's range, which begins before it ends."""
 
-    min_m: _RangeEnd = 0.0
-    max_m: _RangeEnd = 100.0
+    min_m: RangeEnd
+    max_m: RangeEnd
 
     @model_validator(mode="after")
     def _ends_in_order(self) -> Self:
@@ -95,6 +96,8 @@ class RangeFinderConfig(RangeLimits):
     """What looks down along the drone's body."""
 
     white_std_m: NotNegative = 0.0  # of a reading
+    min_m: RangeEnd = 0.0  # of its range; what is nearer or farther is told as the range's end
+    max_m: RangeEnd = 100.0  # likewise
 
 
 class VehicleConfig(StrictModel):
