@@ -6,9 +6,9 @@ from typing import Annotated, Self
 
 from pydantic import Field, model_validator
 
-from link.program.toml_config import StrictModel
+from link.program.toml_config import POSITIVE_MIN, StrictModel
 
-Positive = Annotated[float, Field(gt=0.0, le=1e6)]
+Positive = Annotated[float, Field(ge=POSITIVE_MIN, le=1e6)]
 NotNegative = Annotated[float, Field(ge=0.0, le=1e6)]
 Fraction = Annotated[float, Field(gt=0.0, lt=1.0)]
 

@@ -12,7 +12,9 @@ from link.errors import UserError
 from link.program.config_mistakes import Location, report
 from link.program.text import read_text
 
-Positive = Annotated[float, Field(gt=0.0, le=1e4)]
+POSITIVE_MIN = 1e-9
+"""A nanometre or a nanosecond: nothing that is set is smaller, and what is divides to numbers that are none."""
+Positive = Annotated[float, Field(ge=POSITIVE_MIN, le=1e4)]
 NotNegative = Annotated[float, Field(ge=0.0, le=1e4)]
 Coordinate = Annotated[float, Field(ge=-1e4, le=1e4)]
 """A length, time or speed beyond this was meant in another unit."""
