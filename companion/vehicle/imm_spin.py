@@ -13,10 +13,10 @@ import numpy as np
 from companion.config.estimation import ImmConfig
 from companion.core.data import Measurement, Quantity
 from companion.vehicle import imm_mixing as mixing
-from companion.vehicle.imm_kernels import HEADING
-from companion.vehicle.imm_numbers import Numbers
+from companion.vehicle.imm_kernels import CURVATURE, HEADING
+from companion.vehicle.imm_numbers import CAR_CURVATURE_MAX_RAD_M, Numbers
 from companion.vehicle.imm_sensors import YAW_RATE, observe
-from companion.vehicle.imm_state import ImmState, is_heading_known
+from companion.vehicle.imm_state import ImmState, is_heading_known, open_states
 from companion.vehicle.imm_swing import SIZE
 from companion.vehicle.lever import turned
 from companion.vehicle.small_matrices import carried_through
@@ -46,6 +46,8 @@ def without_spin(
     """
     if measurement.quantity is Quantity.YAW_RATE:
         spin_rad_s = _spin_told(state, measurement, config.heading.course_speed_min_m_s)
+        if spin_rad_s == 0.0:
+            state = _with_tight_curve_open(state)
         if spin_rad_s == 0.0 == state.spin.told_rad_s:
             return state, measurement
         spin = told(state.spin, spin_rad_s)
@@ -97,6 +99,18 @@ def _turned_for(state: ImmState, rate_rad_s: float, lasts_s: float, config: ImmC
         opened[mode] = F @ covariances[mode] @ F.T
     opened[:, HEADING, HEADING] += (_ERRS_SHARE * rate_rad_s) ** 2 * lasts_s
     return replace(state, modes=(moved, opened, weights))
+
+
+def _with_tight_curve_open(state: ImmState) -> ImmState:
+    """Return the state for a yaw rate: what turns tighter than a car may end its turn at once.
+
+    Else the speed would be told by the turn, and one that has turned on the spot would stand as it drives off.
+    """
+    means, _, weights = state.modes
+    curvature_per_m = float(weights @ means[:, CURVATURE])
+    if abs(curvature_per_m) < CAR_CURVATURE_MAX_RAD_M:
+        return state
+    return replace(state, modes=open_states(state.modes, np.array([CURVATURE]), np.array([curvature_per_m**2])))
 
 
 def _spin_told(state: ImmState, yaw_rate: Measurement, slow_m_s: float) -> float:

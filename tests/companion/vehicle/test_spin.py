@@ -112,6 +112,19 @@ def test_rover_that_ends_a_tight_arc_and_speeds_up_has_not_turned_on_the_spot(se
         assert abs(wrap_angle(float(forecast.yaw_rad[0]) - rover.at(t_s)[2])) < 0.5
 
 
+def test_one_that_has_turned_tightly_and_drives_off_does_not_stand_because_it_turns_no_more() -> None:
+    """Its curvature was 7 1/m; the steering of what turns so is let go within 0.1 s."""
+    forklift = drive(
+        12.0,
+        lambda t: 0.2 if t < 5.0 else min(0.2 + 1.5 * (t - 5.0), 3.0),
+        lambda t: 7.0 * min(max(10.0 * (t - 3.0), 0.0), max(10.0 * (5.0 - t), 0.0), 1.0),
+    )
+    chosen = estimator(IMM)
+    for seed in range(4):
+        done = ride(chosen, forklift, TOLD, seed, from_s=5.3, until_s=6.5)
+        assert np.linalg.norm(done.errors(forklift)[:, :2], axis=1).max() < 0.1
+
+
 def parked(
     gyro_rad_s: Callable[[float], float],
     lasts_s: float,
