@@ -20,7 +20,7 @@ from companion.core.data import FIXED_STD_MAX_M, Quantity
 from companion.situation.situation import Situation
 from companion.vehicle.estimator import BufferHealth
 from companion.vehicle.pad import PadPath
-from companion.vehicle.pad_reach import cone_radius_at_pad_m
+from companion.vehicle.pad_reach import cone_radius_at_pad_m, unseen_std_max_m
 from link.records import replace
 
 _STDS = 3.0
@@ -99,8 +99,14 @@ def do_sightings_disagree(s: Situation, _: CompanionConfig) -> bool:
 
 
 def are_sightings_impossible(s: Situation, c: CompanionConfig) -> bool:
-    """Return whether a pad that only sightings place is seen to change its velocity as no vehicle can."""
+    """Return whether a pad that only sightings place is seen to change its velocity as no vehicle can.
+
+    What is estimated before the pad has been seen is nothing that sightings say: until then nothing tells how far the
+    drone's frame is from a receiver's.
+    """
     if s.pad is None or not s.pad.is_coarse:
+        return False
+    if s.pad.frame_offset.std_m > unseen_std_max_m(s.pad.half_width_m, c):
         return False
     return math.hypot(*s.pad.acceleration_enu_m_s2[0, :2].tolist()) > c.integrity.acceleration_max_m_s2
 

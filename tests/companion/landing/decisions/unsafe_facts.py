@@ -72,7 +72,11 @@ UNSAFE: dict[Reason, Situation] = {
     Reason.VEHICLE_TAKEN: changed(situation(), rival=Rival(drone="drone2", is_this_drone=False)),
     Reason.SIGHTINGS_DISAGREE: changed(situation(), are_sightings_mixed=True),
     Reason.SIGHTINGS_IMPOSSIBLE: situation(
-        pad=replace(braking_pad(CONFIG.integrity.acceleration_max_m_s2 + 0.1), is_coarse=True)
+        pad=replace(
+            braking_pad(CONFIG.integrity.acceleration_max_m_s2 + 0.1),
+            is_coarse=True,
+            frame_offset=FrameOffset(distance_m=0.0, std_m=0.1),
+        )
     ),
     Reason.SEEN_TOO_NEAR: changed(situation(), range_height_m=0.5),
     Reason.BELOW_PAD: situation(-CONFIG.descent.sink.press_depth_m - CONFIG.touchdown.height_max_m - 0.01),
