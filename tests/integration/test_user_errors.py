@@ -81,7 +81,7 @@ MISTAKES = [
     # configurations
     ("companion", "--config not.toml", ["not.toml", "line 1"]),
     ("companion", "--config key.toml", ["key.toml", "'descent.alignment.begin_distnce_m'", "'begin_distance_m'"]),
-    ("companion", "--config range.toml", ["range.toml", "abort.fix_age_max_s = -1.0", "above 0"]),
+    ("companion", "--config range.toml", ["range.toml", "abort.fix_age_max_s = -1.0", "at least 1e-09"]),
     ("companion", "--set limits=3", ["limits = 3", "it is a table"]),
     ("companion", "--firmware pixhawk", ["--firmware': 'pixhawk' is not one of", "px4"]),
     ("companion", "--set silent_vehicle.pad_height_m=1 --set estimator.kind=ukf", ["with the command line", "'imm'"]),

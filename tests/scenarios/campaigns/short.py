@@ -24,8 +24,8 @@ def short_cell(folder: Path, name: str = "short", *, time_limit_s: float = 0.5, 
 
 
 def failing_cell(folder: Path) -> str:
-    """Write a cell whose drone is farther away than one may start, and return its file's name."""
-    return short_cell(folder, "failing", text="run.drone_start_enu_m = [1e12, 0.0, 0.0]\n")
+    """Write a cell whose drone starts on a roof that is higher than one may start, and return its file's name."""
+    return short_cell(folder, "failing", text='run.place = "deck"\nvehicle.roof_height_m = 1e4\n')
 
 
 def scenarios(*args: object) -> int:

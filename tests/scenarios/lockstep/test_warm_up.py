@@ -111,7 +111,7 @@ from companion.vehicle.factory import make_estimator
 estimator, memory = make_estimator(EstimatorConfig()), None
 before = prepared()
 for i in range(100):
-    told = {Quantity.POSITION: [0.0] * 3, Quantity.VELOCITY: [0.0] * 3, Quantity.HEADING: [0.0]}
+    told = {Quantity.POSITION: [0.0] * 3, Quantity.VELOCITY: [0.0] * 3, Quantity.HEADING: [0.05 * max(i - 50, 0)]}
     told[Quantity.YAW_RATE] = [0.5 if i > 50 else 0.0]
     memory = estimator.fuse(memory, [
         Measurement(t_ns=i * 10**8, quantity=one, value=np.array(value), covariance=1e-4 * np.eye(len(value)))
