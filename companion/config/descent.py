@@ -38,8 +38,8 @@ class ConeConfig(StrictModel):
 class WaitConfig(StrictModel):
     """Where the drone waits above the pad, and what for.
 
-    It waits beside the cone, while it is faster than `abort.near_speed_max_m_s`, for a risk that passes (`RiskConfig`),
-    and for its own sway.
+    It waits beside the cone, while it is faster than `abort.near_speed_max_m_s`, and for a risk that passes
+    (`RiskConfig`).
     """
 
     height_m: Positive = 0.85  # a heaving roof and a late stop leave the drone above `abort.near_height_m`
@@ -75,17 +75,6 @@ class UnseenConfig(StrictModel):
     anew_max: Annotated[int, Field(ge=0, le=100)] = 10
 
 
-class SwayConfig(StrictModel):
-    """The drone's own sway that is waited for low above the pad."""
-
-    # Lean beyond that of the last second, as an acceleration: 8.7 degrees of the 15 over trim that S1 allows. Low above
-    # the pad the drone then waits at the commit height for the gust or the correction to pass.
-    acceleration_max_m_s2: Positive = 1.5
-    calm_hold_s: NotNegative = 0.25
-    # Of the lowest foot, below which the contact comes before a stop: 0.45 m/s, 0.15 s late, then 3 m/s^2.
-    height_min_m: NotNegative = 0.1
-
-
 class DescentConfig(StrictModel):
     """From the alignment to the contact."""
 
@@ -99,7 +88,6 @@ class DescentConfig(StrictModel):
     wait: WaitConfig = WaitConfig()
     risk: RiskConfig = RiskConfig()
     unseen: UnseenConfig = UnseenConfig()
-    sway: SwayConfig = SwayConfig()
 
     @model_validator(mode="after")
     def _commits_below_the_wait(self) -> Self:

@@ -71,6 +71,7 @@ class AbortConfig(StrictModel):
     near_height_m: Positive = 0.4  # below this there is no time to wait; what is higher climbs back to wait
     near_speed_max_m_s: Positive = 0.8  # S1 asks for 1.0 at contact
     near_speed_hold_s: NotNegative = 0.06  # for which it must be too fast near the pad: three reports at 50 Hz
+    may_stand_below_m: NotNegative = 0.1  # its own height errs by so much: one that does not sink may have touched
     alive_lost_fix_age_max_s: NotNegative = 0.5  # in place of `fix_age_max_s` once the vehicle's token is lost
     height_m: FlownHeight = 5.0  # above the pad, or above where the abort began without a vehicle
     # For so long vehicle and autopilot are heard without a break before the next approach: a retry is soon lost to an

@@ -15,7 +15,6 @@ from companion.landing.state.step_data import StepInputs, System
 from companion.landing.steering.ahead import make_up, model_along, shift_aim
 from companion.landing.steering.flown_plan import extrapolate, flown_plan, state_at
 from companion.landing.steering.following_height import rise_from_ground_m, waiting_rise_m
-from companion.landing.steering.sway import update_sway
 from companion.landing.steering.targets import Aim, hover_aim, is_at_rest, pad_aim, stopping_point
 from companion.landing.steering.virtual_model import Tracking, add_to_past, state_then
 from companion.landing.touchdown.levelling import levelled, levelling_now, limit_tilt
@@ -63,10 +62,6 @@ def fly(
     """Plan from the virtual model now to where it is at the next step, one period from now."""
     if memory.model.reference is None or memory.progress.phase not in FLYING_PHASES:
         return memory, None
-    if inputs.own is not None:
-        own_ns = inputs.monotonic_at(inputs.own.t_ns)
-        sway = update_sway(memory.model.sway, inputs.own, own_ns, system.config.descent.sway)
-        memory = replace(memory, model=replace(memory.model, sway=sway))
     memory = _to_lost_drone(memory, situation)
     model = memory.model
     if model.reference is None:

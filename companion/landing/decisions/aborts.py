@@ -100,7 +100,7 @@ def strays(s: Situation, c: CompanionConfig) -> bool:
 
 def _may_stand(a: Approach, c: CompanionConfig) -> bool:
     """Return whether a drone is lower than its height errs and does not sink, with a contact or without."""
-    return a.height_m < c.descent.sway.height_min_m and -a.climb_m_s < c.touchdown.blocked_speed_m_s
+    return a.height_m < c.abort.may_stand_below_m and -a.climb_m_s < c.touchdown.blocked_speed_m_s
 
 
 def _is_contact_risky(s: Situation, c: CompanionConfig) -> bool:

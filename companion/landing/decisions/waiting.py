@@ -6,8 +6,6 @@ from companion.config.companion import CompanionConfig
 from companion.core.reasons import Cause, Reason
 from companion.landing.decisions.aborts import strays
 from companion.landing.state.memory import Progress, StepMemory
-from companion.landing.steering.sway import is_swaying
-from companion.situation.own_drone import lowest_foot
 from companion.situation.phases import Phase
 from companion.situation.situation import Approach, Situation
 from link.records import replace
@@ -17,13 +15,7 @@ _HELD_UP_M = 0.1  # above the height of waiting, down to which a descent sinks w
 
 def waits_at_m(memory: StepMemory, situation: Situation, config: CompanionConfig) -> float | None:
     """Return how high above the pad a descent waits for now, None for one that goes on."""
-    if _find_awaited(memory, situation, config) is not None:
-        return _waiting_height_m(situation, config)
-    if not waits_for_calm(memory, situation, config):
-        return None
-    # Where only the detector places the pad, nothing corrects a drone that stays as low as it is blind.
-    is_blind = situation.pad is not None and situation.pad.is_coarse
-    return _waiting_height_m(situation, config) if is_blind else config.descent.commit_height_m
+    return None if _find_awaited(memory, situation, config) is None else _waiting_height_m(situation, config)
 
 
 def _waiting_height_m(situation: Situation, config: CompanionConfig) -> float:
@@ -113,14 +105,3 @@ def is_moment_quiet(risk: float | None, situation: Situation, config: CompanionC
     if risk is None or relative is None or relative.height_m > _waiting_height_m(situation, config) + _HELD_UP_M:
         return False
     return risk <= config.descent.risk.begins_max
-
-
-def waits_for_calm(memory: StepMemory, situation: Situation, config: CompanionConfig) -> bool:
-    """Return whether a leaning drone is still high enough above the pad to wait until it has come upright."""
-    relative, drone = situation.approach, situation.drone
-    if memory.progress.phase is not Phase.DESCEND or relative is None or drone is None:
-        return False
-    lowest_m = relative.height_m - lowest_foot(drone, config.touchdown)[0]
-    return lowest_m > config.descent.sway.height_min_m and is_swaying(
-        memory.model.sway, situation.monotonic_ns, config.descent.sway
-    )

@@ -21,7 +21,6 @@ from companion.integrity.sightings import SightingWatch
 from companion.integrity.stamps import FixStamps
 from companion.integrity.vehicle_data import Contradictions, CourseWatch
 from companion.landing.steering.flown_plan import FlownPlan
-from companion.landing.steering.sway import Sway
 from companion.landing.steering.virtual_model import NO_RIDE, Ride, Tracking, move_tracking
 from companion.planning.guidance import GuidanceMemory, ReferenceState
 from companion.situation.phases import Phase
@@ -113,7 +112,6 @@ class ModelMemory(Struct, frozen=True, kw_only=True, eq=False):
         guidance: the guidance law's own memory.
         tracking: how the drone follows it.
         ride: how high it flies on its setpoints.
-        sway: how hard the drone leans.
         yaw_setpoint_rad: last one sent.
     """
 
@@ -123,7 +121,6 @@ class ModelMemory(Struct, frozen=True, kw_only=True, eq=False):
     guidance: GuidanceMemory | None = None
     tracking: Tracking = field(default_factory=Tracking)
     ride: Ride = NO_RIDE
-    sway: Sway = field(default_factory=Sway)
     yaw_setpoint_rad: float = 0.0
 
 

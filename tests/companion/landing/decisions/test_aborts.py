@@ -149,8 +149,8 @@ STANDS = changed(risky(0.12, 0.1), reference=reference_at(-0.2), range_height_m=
         (risky(LOW_M, 0.45, unsafe=0.0, broken_off=0.55), True),
         (risky(CONFIG.descent.commit_height_m + 0.01, 0.45), False),  # it may wait
         (risky(0.02, 0.45), True),  # what it touches as it tries, it would touch anyway
-        (risky(CONFIG.descent.sway.height_min_m - 0.01, 0.1), False),  # it may stand already
-        (risky(CONFIG.descent.sway.height_min_m + 0.01, 0.1), True),
+        (risky(CONFIG.abort.may_stand_below_m - 0.01, 0.1), False),  # it may stand already
+        (risky(CONFIG.abort.may_stand_below_m + 0.01, 0.1), True),
         (STANDS, False),
     ],
 )
