@@ -7,6 +7,7 @@ import math
 
 from msgspec import Struct
 
+from link.frames.rotations import wrap_angle
 from link.records import replace
 
 _SURE_S = 0.09  # from the first reading to one that confirms it: a knock is over, and a gyro of 10 Hz has told it twice
@@ -77,7 +78,7 @@ def compared(spin: Spin, heading_rad: float, variance_rad2: float) -> Spin:
     if spin.told_s < _COMPARED_S or abs(spin.turned_rad) <= shows_rad:
         return spin
     change_rad = heading_rad - spin.heading_rad
-    if abs(_wrapped(change_rad)) < abs(_wrapped(change_rad - spin.turned_rad)):
+    if abs(wrap_angle(change_rad)) < abs(wrap_angle(change_rad - spin.turned_rad)):
         return replace(spin, is_believed=False, is_denied=True)
     return replace(spin, heading_rad=heading_rad, turned_rad=0.0)
 
@@ -89,7 +90,3 @@ def passed(spin: Spin, dt_s: float) -> Spin:
         return NO_SPIN
     turned_rad = spin.turned_rad + spin.told_rad_s * dt_s
     return replace(spin, told_s=spin.told_s + dt_s, left_s=left_s, turned_rad=turned_rad)
-
-
-def _wrapped(angle_rad: float) -> float:
-    return math.remainder(angle_rad, math.tau)

@@ -9,6 +9,7 @@ from typing import Annotated, Any, Self, TypeVar
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 from pydantic_core import to_json
 
+from link.errors import own_words
 from link.messages import (
     VEHICLE_HEIGHT_MAX_M,
     VEHICLE_LENGTH_MAX_M,
@@ -224,5 +225,5 @@ def is_possible(pad: PadGeometry) -> bool:
 def _payload_error(error: ValidationError) -> PayloadError:
     first = error.errors(include_url=False, include_input=False)[0]
     where = ".".join(str(part) for part in first["loc"])
-    why = first["msg"].removeprefix("Value error, ")  # pydantic's, before words of one's own
+    why = own_words(first["msg"])
     return PayloadError(f"{where}: {why}" if where else why)

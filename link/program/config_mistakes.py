@@ -8,6 +8,7 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
+from link.errors import own_words
 from link.program.near_names import key_hint, models_in
 
 Location = tuple[int | str, ...]
@@ -75,7 +76,7 @@ def _cut(text: str, length: int) -> str:
 
 
 def _lower_first(message: str) -> str:
-    plain = message.removeprefix("Value error, ")
+    plain = own_words(message)
     return plain[:1].lower() + plain[1:]
 
 

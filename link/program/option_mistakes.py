@@ -9,6 +9,8 @@ from typing import Any, get_args
 
 import typer
 
+from link.errors import own_words
+
 _NUMBERS = (int, float)
 
 
@@ -23,7 +25,7 @@ def describe(error: typer.TyperException, command: Any, arguments: Sequence[str]
     return (
         _wrong_number(error)
         or _wrong_count(error, meant_command(command, arguments)[0], arguments)
-        or _with_commands(error, error.format_message().replace("Value error, ", ""))  # for a check of one's own
+        or _with_commands(error, own_words(error.format_message()))
     )
 
 

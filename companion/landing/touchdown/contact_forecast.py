@@ -137,10 +137,6 @@ def forecast_contact(
         deck=deck,
         pushes=numbers.pushes,
     )
-    descent = Descent(
-        course=course,
-        drone=drone,
-        rules=rules_of(relative, inputs, config),
-    )
+    descent = Descent(course=course, drone=drone, rules=rules_of(relative, inputs, config))
     ends = roll_out(samples, descent, age_s)
     return sum_up(ends, events.weight, max(relative.pad_half_width_m - config.touchdown.foot_radius_m, 0.0))
