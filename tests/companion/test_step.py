@@ -48,7 +48,7 @@ def test_start_is_refused_without_what_a_flight_needs() -> None:
     for view, reason in (
         (replace(good, link_up=False), "no autopilot is connected"),
         (replace(good, frame=None), "the autopilot has no origin yet"),
-        (replace(good, failsafe=True), "the autopilot is in failsafe"),
+        (replace(good, failsafe=True), "the autopilot is in a failsafe: the pilot has to change its mode first"),
     ):
         flight.view = view
         reply = flight.step(Command.START).reply

@@ -76,7 +76,10 @@ def test_start_says_what_is_missing() -> None:
         (replace(facts, autopilot=replace(view, receiver=Receiver())), Reason.HEIGHTS_APART.value),
         (replace(facts, drone=None), "the autopilot reports no local position yet"),
         (replace(facts, drone=replace(drone, attitude_known=False)), "the autopilot's attitude is too old"),
-        (replace(facts, autopilot=replace(view, failsafe=True)), "the autopilot is in failsafe"),
+        (
+            replace(facts, autopilot=replace(view, failsafe=True)),
+            "the autopilot is in a failsafe: the pilot has to change its mode first",
+        ),
     ):
         event, reply = answer(order(Command.START), Phase.IDLE, missing, CONFIG)
         assert event is None
