@@ -139,6 +139,7 @@ def _situation(memory: StepMemory, pad: PadPath | None, inputs: StepInputs, syst
                 memory.model.reference, inputs.response, inputs.link_delay.std_s, system.config.abort.tracking_stds_max
             ),
             late_s=inputs.link_delay.mean_s + inputs.link_delay.std_s,
+            unanswered_s=inputs.link_delay.unanswered_s,
             rides_m=memory.model.ride.above_m,
         ),
         waiting_point_enu_m=memory.places.waiting_point_enu_m,

@@ -11,7 +11,7 @@ from companion.core.reasons import Cause, Reason, sentence
 from companion.integrity.vehicle_data import unverified
 from companion.landing.carried_on import bound_carried
 from companion.landing.decisions.aborts import why_unplaced
-from companion.landing.decisions.conditions import trial_press
+from companion.landing.decisions.contact_trial import trial_press
 from companion.landing.decisions.waiting import why_held_up
 from companion.landing.state.memory import Progress, StepMemory
 from companion.landing.state.step_data import StepInputs

@@ -11,8 +11,9 @@ from companion.config.companion import CompanionConfig
 from companion.core.data import Rival, VehicleEstimate
 from companion.landing.guiding import guiding_message
 from companion.landing.state.memory import StepMemory
-from companion.landing.state.step_data import LinkDelay, StepInputs, StepOutputs, System
+from companion.landing.state.step_data import StepInputs, StepOutputs, System
 from companion.landing.steering.virtual_model import response_to
+from companion.runtime.link_delay import link_delay
 from companion.runtime.publishing import StatusPublisher, with_links
 from companion.runtime.step_clock import StepClock
 from companion.runtime.step_commands import StepCommands, refuse_motors_off
@@ -30,7 +31,6 @@ from link.zenoh.keys import Keys, Publication
 _MOTION_RATE_MIN_HZ = 50.0
 # A drone that sinks, or lifts off, cannot keep to a smaller jerk from one instant to the next.
 _KEEPS_LIMITS = frozenset({Phase.DESCEND, Phase.TOUCHDOWN, Phase.LIFT_OFF})
-_LINK_DELAY_MAX_S = 0.3  # a longer way is not led for: the model is too uncertain so far ahead
 
 
 class CompanionNode:
@@ -217,7 +217,7 @@ class CompanionNode:
             station=station,
             leaving=self._leaving,
             shaping=self.autopilot.shaping if kept is None else kept.shaping,
-            link_delay=LinkDelay(mean_s=min(way.one_way_s, _LINK_DELAY_MAX_S), std_s=way.one_way_std_s),
+            link_delay=link_delay(way, local_ns),
         )
         self.inputs = inputs
         self.memory, self.outputs = companion_step(self.memory, inputs, self.system)

@@ -102,6 +102,7 @@ class Following(Struct, frozen=True, kw_only=True):
         lost_for_s: for how long it has lost them again and again, though they began where it was.
         reference: the virtual model that they follow.
         late_s: after which most have come: the link's mean delay and its standard deviation.
+        unanswered_s: for so long nothing has shown that the autopilot hears them.
         rides_m: the lowest foot above that of a level drone on the virtual model, when it could touch nothing.
     """
 
@@ -110,6 +111,7 @@ class Following(Struct, frozen=True, kw_only=True):
     lost_for_s: float = 0.0
     reference: ReferenceState | None = None
     late_s: float = 0.0
+    unanswered_s: float = 0.0
     rides_m: float = 0.0
 
 

@@ -47,6 +47,7 @@ class FaultFlight(Lockstep):
         self.vehicle_is_alive = True
         self.scenario = scenario
         self._cut_until_s = 0.0
+        self._unheard_until_s = 0.0
         self._stopped_until_s = 0.0
         self._vehicle_held_until_s = 0.0
         self._vehicle_cut_until_s = 0.0
@@ -124,6 +125,10 @@ class FaultFlight(Lockstep):
     def cut_link(self, duration_s: float = inf) -> None:
         """Let nothing through between companion and autopilot."""
         self._cut_until_s = self.recording.elapsed_s + duration_s
+
+    def cut_way_up(self, duration_s: float) -> None:
+        """Let nothing of the companion's through to the autopilot; it hears on."""
+        self._unheard_until_s = self.recording.elapsed_s + duration_s
 
     def stop_companion(self, duration_s: float) -> None:
         """Let the companion's process stand still, as by SIGSTOP; what is sent to it waits for it."""
@@ -212,7 +217,8 @@ class FaultFlight(Lockstep):
 
     def _send(self, frames: Sequence[bytes], t_ns: int) -> None:
         self.setpoints += sum(one.get_type() == _SETPOINT for one in _messages(frames))
-        super()._send([] if self._link_is_cut else frames, t_ns)
+        is_unheard = self._link_is_cut or self.recording.elapsed_s < self._unheard_until_s
+        super()._send([] if is_unheard else frames, t_ns)
 
     @property
     def _link_is_cut(self) -> bool:

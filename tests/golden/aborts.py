@@ -29,6 +29,8 @@ _WRONG_M = 1.2  # more than what a range finder sees may be off the height of a 
 _BESIDE_M = 0.4
 _OVER_EDGE_M = 2.25  # from the middle of a roof of 4.2 m: what looks down sees the road, and a foot is on the roof
 _COMMITTED_M = 0.4  # of the drone above the roof: its feet are 0.28 m above
+_UNHEARD_S = 3.0
+_STOPS_ABOVE_M = 0.5  # of the drone above the roof: from there ArduCopter, left alone, stops with its feet 0.27 m above
 _AHEAD_S = 0.3
 _LIMIT_M_S = 4.0  # less than the vehicle's 5 m/s
 _CLIMB_S = 12.0  # a little more than the abort's own time limit
@@ -124,11 +126,11 @@ def _pad_is_described(forward_m: float, up_m: float, over_road_m: float = 0.0) -
     return describe
 
 
-def _when_committed(fault: Fault) -> Fault:
-    """Let the fault wait until the drone is too low to wait for better."""
+def _when_below(height_m: float, fault: Fault) -> Fault:
+    """Let the fault wait until the drone is so low above the roof."""
 
     def descend(flight: FaultFlight) -> None:
-        above_m = flight.scenario.vehicle.roof_height_m + _COMMITTED_M
+        above_m = flight.scenario.vehicle.roof_height_m + height_m
         while flight.height_m > above_m:
             flight.step()
         fault(flight)
@@ -169,7 +171,7 @@ ABORTS: dict[str, Abort] = {
     ),
     "contact_risky": Abort(
         reason=Reason.CONTACT_RISKY,
-        fault=_when_committed(_pad_is_described(forward_m=1.5 * _BESIDE_M, up_m=0.0)),
+        fault=_when_below(_COMMITTED_M, _pad_is_described(forward_m=1.5 * _BESIDE_M, up_m=0.0)),
     ),
     "stamps_stepped": Abort(
         reason=Reason.STAMPS_STEPPED, scenario="straight_15", phase=Phase.CHASE, fault=_vehicles_clock_is_set(-0.1)
@@ -185,6 +187,11 @@ ABORTS: dict[str, Abort] = {
     "nothing_touched": Abort(
         reason=Reason.NOTHING_TOUCHED,
         fault=_pad_is_described(forward_m=0.0, up_m=_FAR_WRONG_M, over_road_m=_FAR_WRONG_M),
+    ),
+    "setpoints_unheard": Abort(
+        reason=Reason.SETPOINTS_UNHEARD,
+        scenario="static+firmware=ardupilot",
+        fault=_when_below(_STOPS_ABOVE_M, lambda flight: flight.cut_way_up(_UNHEARD_S)),
     ),
     "road_below": Abort(
         reason=Reason.ROAD_BELOW,

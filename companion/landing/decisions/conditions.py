@@ -10,11 +10,15 @@ from companion.landing.decisions.contact import (
     does_not_fall,
     is_over_road,
     is_stopped_by_pad,
-    trial_press_m_s2,
-    trial_s,
     verdict,
 )
 from companion.landing.decisions.contact_signs import signs_of, signs_text
+from companion.landing.decisions.contact_trial import (
+    disputed_hold_s,
+    is_in_disputed_contact,
+    is_trial_unheard,
+    trial_hold_s,
+)
 from companion.landing.state.memory import Held
 from companion.situation.phases import LANDING_PHASES, Phase
 from companion.situation.situation import Situation, vehicle_stands
@@ -147,10 +151,6 @@ def _is_in_hard_contact(s: Situation, c: CompanionConfig) -> bool:
     )
 
 
-def _is_in_disputed_contact(s: Situation, c: CompanionConfig) -> bool:
-    return verdict(signs_of(s, c.touchdown), c) in {Verdict.CONTACT, Verdict.DISPUTED}
-
-
 def _is_road_below(s: Situation, c: CompanionConfig) -> bool:
     """Return whether the range finder sees the road where the pad should be, be the drone at an edge or in the air."""
     signs = signs_of(s, c.touchdown)
@@ -176,24 +176,11 @@ def _is_sunk(s: Situation, c: CompanionConfig) -> bool:
     return s.approach is not None and s.approach.height_m < -c.touchdown.lost.missed_depth_m
 
 
-def _late_s(s: Situation) -> float:
-    return s.following.late_s + (0.0 if s.drone is None else max(s.drone.age_s, 0.0))
-
-
-def trial_press(s: Situation, c: CompanionConfig) -> float:
-    """Return how hard the drone may be pressed down to see whether it stands, m/s^2."""
-    return trial_press_m_s2(signs_of(s, c.touchdown), _late_s(s), c.touchdown)
-
-
-def _trial_s(s: Situation, c: CompanionConfig) -> float:
-    return trial_s(signs_of(s, c.touchdown), trial_press(s, c), _late_s(s), c.touchdown)
-
-
 TOUCHED = Condition(
     reason=Reason.CONTACT,
     phases=_DESCENT,
     is_true=is_in_contact,
-    hold_s=_trial_s,
+    hold_s=trial_hold_s,
     cause=lambda s, c: Cause(Reason.CONTACT, (signs_text(signs_of(s, c.touchdown)),)),
 )
 """Every sign of a contact agrees."""
@@ -201,8 +188,8 @@ TOUCHED = Condition(
 TOUCHED_BY_DISPUTE = Condition(
     reason=Reason.DISPUTED_CONTACT,
     phases=_DESCENT,
-    is_true=_is_in_disputed_contact,
-    hold_s=lambda _, c: c.touchdown.range_finder.disputed_hold_s,
+    is_true=is_in_disputed_contact,
+    hold_s=disputed_hold_s,
     cause=lambda s, c: Cause(Reason.DISPUTED_CONTACT, (signs_text(signs_of(s, c.touchdown)),)),
 )
 """All but the range finder's."""
@@ -229,8 +216,9 @@ MISSED = (
         is_true=_is_road_below,
         hold_s=lambda _, c: c.touchdown.range_finder.off_hold_s,
     ),
+    Condition(reason=Reason.SETPOINTS_UNHEARD, phases=_DESCENT, is_true=is_trial_unheard),
 )
-"""What ends a commitment to land as well: the pad is not where it is said to be."""
+"""What ends a commitment to land as well: the pad is not where it is said to be, or nothing presses the drone down."""
 
 HELD_UP = Condition(
     reason=Reason.HELD_UP, phases=_STANDING, is_true=_is_held_up, hold_s=lambda _, c: c.touchdown.stopped_hold_s

@@ -22,10 +22,17 @@ class System(Struct, frozen=True, kw_only=True, eq=False):
 
 
 class LinkDelay(Struct, frozen=True, kw_only=True):
-    """How long a message takes, and by how much that differs from one to the next."""
+    """How long a message takes, by how much that differs from one to the next, and how long none may have come.
+
+    Attributes:
+        mean_s: on its way.
+        std_s: of that.
+        unanswered_s: since the newest question was asked that the autopilot has answered.
+    """
 
     mean_s: float = 0.0
     std_s: float = 0.0
+    unanswered_s: float = 0.0
 
 
 class VehicleInputs(Struct, frozen=True, kw_only=True, eq=False):

@@ -24,8 +24,8 @@ from companion.landing.decisions.conditions import (
     is_fix_old,
     is_vehicle_taken,
     tell_taken,
-    trial_press,
 )
+from companion.landing.decisions.contact_trial import trial_press
 from companion.situation.phases import LANDING_PHASES, Phase
 from companion.situation.situation import Situation
 from link.records import replace
@@ -131,7 +131,7 @@ def test_contact_that_the_range_finder_disputes_is_none_for_so_long() -> None:
     ],
 )
 def test_drone_below_its_pad_has_missed_it(below_m: float, *, is_below: bool, is_sunk: bool) -> None:
-    below, sunk, _ = MISSED
+    below, sunk, *_ = MISSED
     facts = situation(-below_m)
     assert (below.is_true(facts, CONFIG), sunk.is_true(facts, CONFIG)) == (is_below, is_sunk)
     assert is_below_pad(facts, CONFIG) is is_below

@@ -85,6 +85,12 @@ UNSAFE: dict[Reason, Situation] = {
         reference=reference_at(-0.5 * CONFIG.descent.sink.press_depth_m),
         range_height_m=1.5,
     ),
+    Reason.SETPOINTS_UNHEARD: changed(
+        situation(LOW_M),
+        reference=reference_at(LOW_M - 0.3),
+        range_height_m=LOW_M,
+        unanswered_s=CONFIG.touchdown.range_finder.disputed_hold_s + 0.01,
+    ),
     Reason.NOTHING_TOUCHED: situation(-CONFIG.touchdown.lost.missed_depth_m - 0.01),
 }
 # Below the commit height these still count: without them nobody knows where the pad is.
