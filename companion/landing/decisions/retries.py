@@ -25,6 +25,8 @@ _LASTING = (
 )
 """What the drone looked with the first time is all that it has to look with."""
 
+_OF_STAMPS = frozenset({Reason.STAMPS_AHEAD, Reason.STAMPS_LATE})
+
 
 def end_climb(progress: Progress, s: Situation, config: CompanionConfig) -> Decision | None:
     """Return the event that ends a climb after an abort, None while it goes on."""
@@ -51,12 +53,15 @@ def _no_retry(progress: Progress, s: Situation, config: CompanionConfig) -> Caus
         Reason.HEARD_WITH_BREAKS: not holds(HEARD, progress.held, s, config),
     }
     first = next((Cause(reason) for reason, holds_now in known.items() if holds_now), None)
+    impossible = obstacle(progress.held, s, config)
+    if first == Cause(Reason.NO_VEHICLE_DATA) and impossible is not None and impossible.reason in _OF_STAMPS:
+        first = impossible  # they come, and are taken for old by their stamps, or refused for them
     if not (is_heading_to_be_shown(s, config) and progress.cause.reason is not Reason.HEADING_UNKNOWN):
         first = first or why_unplaced(s)  # a heading that an alignment has waited for in vain is not waited for again
     if first is None and progress.cause.reason in _LASTING:
         first = progress.cause
     if first is None and is_out_of_range(s, config):
         first = Cause(Reason.TOO_FAR_FROM_START)
-    first = first or obstacle(progress.held, s, config)
+    first = first or impossible
     is_last = progress.interrupted_ns is None and progress.retries >= config.abort.retries_max
     return Cause(Reason.NO_RETRY_LEFT) if first is None and is_last else first
