@@ -7,7 +7,7 @@ import numpy as np
 from companion.autopilots.state import AutopilotState
 from companion.core.data import Array, Measurement, OwnState, Quantity
 from companion.vehicle.range_watch import ATTITUDE_AGE_MAX_S
-from link.frames.geodesy import LocalFrame, local_from_geodetic, scale_of
+from link.frames.geodesy import LocalFrame, is_metric, local_from_geodetic, scale_of
 from link.frames.rotations import roll_pitch_yaw_of, rotate, yaw_of
 from link.messages import Fix, FixVelocity, Matrix3, PadSighting, Quaternion, Vector3, VehicleImu
 from link.payloads import cdr
@@ -118,7 +118,13 @@ def _least_variance(covariance: Array) -> float:
 
 
 def fix_measurement(fix: Fix, frame: LocalFrame) -> Measurement:
-    """Return the antenna's position in W, which is the autopilot's `frame`."""
+    """Return the antenna's position in W, which is the autopilot's `frame`.
+
+    Raises:
+        PayloadError: that frame is none in which anything is landed on.
+    """
+    if not is_metric(frame):
+        raise PayloadError("so near a pole a metre east in the autopilot's frame is none on the ground")
     position = local_from_geodetic(frame, fix.latitude_rad, fix.longitude_rad, fix.altitude_m)
     return Measurement(
         t_ns=fix.t_ns,

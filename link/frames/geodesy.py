@@ -203,6 +203,14 @@ def scale_of(frame: LocalFrame) -> Vector3:
             assert_never(frame.projection)
 
 
+def is_metric(frame: LocalFrame) -> bool:
+    """Return whether a metre of `frame` is one on the ground; ArduPilot's east is longer within 0.57 degrees of a pole.
+
+    There places move in the frame as no velocity tells, the drone's own among them.
+    """
+    return frame.projection is not Projection.ARDUPILOT or cos(frame.origin.latitude_rad) >= _ARDUPILOT_COSINE_MIN
+
+
 def _shortening(origin: Datum, north_rad: float) -> float:
     return max(cos(origin.latitude_rad + 0.5 * north_rad), _ARDUPILOT_COSINE_MIN)
 

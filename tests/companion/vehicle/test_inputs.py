@@ -46,6 +46,19 @@ def test_fix_is_where_it_was_made_in_the_local_frame(place: Vector3, projection:
     np.testing.assert_allclose(measurement.value, place, atol=1e-3)
 
 
+@pytest.mark.parametrize(("latitude_deg", "is_placed"), [(89.42, True), (89.44, False), (-89.44, False), (90.0, False)])
+def test_fix_is_refused_so_near_a_pole_that_ardupilots_metres_are_none(latitude_deg: float, *, is_placed: bool) -> None:
+    origin = replace(ORIGIN, latitude_rad=math.radians(latitude_deg))
+    fix = Fix(t_ns=START_NS, latitude_rad=origin.latitude_rad, longitude_rad=0.1, altitude_m=0.0)
+    fix_measurement(fix, LocalFrame(origin=origin, projection=Projection.PX4))
+    frame = LocalFrame(origin=origin, projection=Projection.ARDUPILOT)
+    if is_placed:
+        fix_measurement(fix, frame)
+        return
+    with pytest.raises(PayloadError, match="pole"):
+        fix_measurement(fix, frame)
+
+
 def test_nothing_is_placed_before_the_autopilot_has_told_its_frame() -> None:
     fix = Fix(t_ns=START_NS, latitude_rad=0.83, longitude_rad=0.14, altitude_m=401.0)
     velocity = FixVelocity(t_ns=START_NS, velocity_enu_m_s=(1.0, 2.0, 0.0))
