@@ -124,6 +124,7 @@ def _situation(memory: StepMemory, pad: PadPath | None, inputs: StepInputs, syst
             are_sightings_mixed=vehicle.sightings.are_mixed,
             has_pad_stepped=vehicle.sightings.has_stepped,
             is_road_elsewhere=bool(vehicle.is_road_elsewhere),
+            has_shown_heading=vehicle.course.has_agreed,
         ),
         below=Below(
             range_height_m=range_height_m(inputs.own, seen, sensor_m, inputs.t_ns),

@@ -61,12 +61,12 @@ class Reason(Enum):
     STAMPS_STEPPED = "stamps of the fixes have stepped: the vehicle's clock, or the autopilot's, was set"
     VEHICLE_CONTRADICTS_ITSELF = "vehicle data contradict themselves"
     SEEN_ELSEWHERE = (
-        "pad is seen where both receivers say that it is not: see the detector's board and mounting, both receivers, or"
-        " --receiver-frames apart where they have two base stations"
+        "pad is seen where both receivers say that it is not: see the detector's board and mounting, both receivers, "
+        "the vehicle's heading, or --receiver-frames apart where they have two base stations"
     )
     SIGHTINGS_DISAGREE = (
-        "sightings of the pad contradict each other: let one detector alone see one pattern, and nobody else publish"
-        " pad_pose"
+        "sightings of the pad contradict each other, or the vehicle's heading does: let one detector alone see one "
+        "pattern, and nobody else publish pad_pose"
     )
     SIGHTINGS_IMPOSSIBLE = (
         "sightings move the pad as no vehicle moves: let the detector stamp each picture with the time of its exposure"

@@ -193,6 +193,15 @@ def without_contradicted_heading(pad: PadPath, watch: CourseWatch) -> PadPath:
     return replace(pad, unplaced=Cause(Reason.HEADING_OFF_COURSE, (math.degrees(watch.off_rad),)))
 
 
+def contradicted_heading(pad: PadPath | None) -> Cause | None:
+    """Return what is told of a heading that the course contradicts: it turns the arm with which sightings are compared.
+
+    None where nothing contradicts it.
+    """
+    why = None if pad is None else pad.unplaced
+    return why if why is not None and why.reason is Reason.HEADING_OFF_COURSE else None
+
+
 _LATE_S = 0.1  # by which a receiver's output follows its measurement: Pixhawk, NMEA and ROS drivers stamp either
 
 
@@ -202,6 +211,10 @@ class Unverified(Enum):
     PLACE = "the pad is where sightings alone say: nothing shows a detector that is always off by the same"
     FRAMES = "both receivers are taken to have one frame, for their phases are fixed: nothing sees the pad"
     STAMPS = "the vehicle's stamps: those that are {late_s:g} s late put the pad {off_m:.1f} m off, and nothing sees it"
+    HEADING = (
+        "the vehicle's heading: {off_deg:.0f} degrees put the pad {off_m:.1f} m off, and neither a course nor a "
+        "detector has shown it"
+    )
 
 
 def unverified(s: Situation, c: CompanionConfig) -> tuple[str, ...]:
@@ -215,4 +228,15 @@ def unverified(s: Situation, c: CompanionConfig) -> tuple[str, ...]:
         return ()
     off_m = _LATE_S * pad.ground_speed_m_s
     stamps = Unverified.STAMPS.value.format(late_s=_LATE_S, off_m=off_m)
-    return (stamps, *((Unverified.FRAMES.value,) if c.integrity.receiver_frames is ReceiverFrames.AUTO else ()))
+    frames = (Unverified.FRAMES.value,) if c.integrity.receiver_frames is ReceiverFrames.AUTO else ()
+    return (stamps, *frames, *_unverified_heading(s, c))
+
+
+def _unverified_heading(s: Situation, c: CompanionConfig) -> tuple[str, ...]:
+    """Return what a heading that is as far off as a course would let it be does to a pad beside the antenna."""
+    pad = s.pad
+    if pad is None or pad.unplaced is not None or pad.mounting.arm_m == 0.0 or s.vehicle.has_shown_heading:
+        return ()
+    off_rad = c.integrity.heading_off_max_rad
+    off_m = 2.0 * pad.mounting.arm_m * math.sin(0.5 * off_rad)
+    return (Unverified.HEADING.value.format(off_deg=math.degrees(off_rad), off_m=off_m),)

@@ -65,6 +65,7 @@ class VehicleNews(Struct, frozen=True, kw_only=True):
         are_sightings_mixed: what the drone sees of the pad contradicts itself.
         has_pad_stepped: it is seen elsewhere on the vehicle than where it was confirmed.
         is_road_elsewhere: it is said to be higher or lower than any hill puts it.
+        has_shown_heading: its course has agreed with its heading.
     """
 
     fix_age_s: float | None = None
@@ -77,6 +78,7 @@ class VehicleNews(Struct, frozen=True, kw_only=True):
     are_sightings_mixed: bool = False
     has_pad_stepped: bool = False
     is_road_elsewhere: bool = False
+    has_shown_heading: bool = True
 
 
 class Below(Struct, frozen=True, kw_only=True, eq=False):

@@ -10,7 +10,7 @@ from companion.integrity.frames import tell_unseen
 from companion.integrity.heights import is_seen_too_near
 from companion.integrity.sightings import are_sightings_impossible, do_sightings_disagree, is_seen_elsewhere
 from companion.integrity.stamps import have_stamps_stepped, is_stamped_ahead
-from companion.integrity.vehicle_data import contradicts_itself
+from companion.integrity.vehicle_data import contradicted_heading, contradicts_itself
 from companion.landing.decisions.conditions import (
     AUTOPILOT_SILENT,
     MISSED,
@@ -216,12 +216,14 @@ ABORTS = (
         phases=LANDING_PHASES,
         is_true=is_seen_elsewhere,
         hold_s=lambda _, c: c.abort.cone_hold_s,
+        cause=lambda s, _: contradicted_heading(s.pad) or Cause(Reason.SEEN_ELSEWHERE),
     ),
     Condition(
         reason=Reason.SIGHTINGS_DISAGREE,
         phases=LANDING_PHASES,
         is_true=do_sightings_disagree,
         hold_s=lambda s, _: 0.0 if s.vehicle.has_pad_stepped else _MIXED_HOLD_S,
+        cause=lambda s, _: contradicted_heading(s.pad) or Cause(Reason.SIGHTINGS_DISAGREE),
     ),
     Condition(
         reason=Reason.SIGHTINGS_IMPOSSIBLE,

@@ -6,9 +6,9 @@ from companion.config.companion import CompanionConfig
 from companion.config.integrity import IntegrityConfig, ReceiverFrames
 from companion.integrity.vehicle_data import Unverified, unverified
 from companion.situation.situation import Situation
-from companion.vehicle.pad import FrameOffset
+from companion.vehicle.pad import FrameOffset, PadMounting
 from link.records import replace
-from tests.companion.facts import CONFIG, pad_at, situation
+from tests.companion.facts import CONFIG, changed, pad_at, situation
 
 ONE = CompanionConfig(integrity=IntegrityConfig(receiver_frames=ReceiverFrames.ONE))
 LATE_AT_5_M_S = Unverified.STAMPS.value.format(late_s=0.1, off_m=0.5)
@@ -29,6 +29,19 @@ def test_vehicle_that_nothing_sees_is_where_its_stamps_say() -> None:
 def test_pad_that_sightings_alone_place_is_where_they_say(*, has_one_frame: bool, is_coarse: bool) -> None:
     seen = facts(is_seen=True, has_one_frame=has_one_frame, is_coarse=is_coarse)
     assert unverified(seen, CONFIG) == (Unverified.PLACE.value,)
+
+
+def test_heading_that_no_course_has_shown_is_believed_where_the_pad_is_beside_the_antenna() -> None:
+    arm = PadMounting(arm_m=1.3)
+    unseen = facts(is_seen=False)
+    assert unseen.pad is not None
+    parked = changed(replace(unseen, pad=replace(unseen.pad, mounting=arm)), has_shown_heading=False)
+    heading = Unverified.HEADING.value.format(off_deg=12.0, off_m=0.27)  # a chord: 2 * 1.3 m * sin(6 degrees)
+    assert unverified(parked, ONE) == (LATE_AT_5_M_S, heading)
+    assert unverified(changed(parked, has_shown_heading=True), ONE) == (LATE_AT_5_M_S,)
+    assert unverified(changed(unseen, has_shown_heading=False), ONE) == (LATE_AT_5_M_S,)
+    seen = replace(parked, pad=replace(unseen.pad, mounting=arm, frame_offset=FrameOffset(distance_m=0.0)))
+    assert unverified(seen, ONE) == ()
 
 
 def test_sightings_and_receivers_of_one_frame_verify_each_other() -> None:

@@ -92,6 +92,17 @@ def test_pad_that_has_stepped_ends_an_approach_at_once(phase: Phase) -> None:
     assert first_decision(phase, facts, 1.0) == ((Event.UNSAFE, Cause(Reason.SIGHTINGS_DISAGREE)), 0)
 
 
+@pytest.mark.parametrize("reason", [Reason.SEEN_ELSEWHERE, Reason.SIGHTINGS_DISAGREE])
+@pytest.mark.parametrize("phase", [Phase.CHASE, Phase.ALIGN])
+def test_heading_that_is_off_is_blamed_before_a_detector(phase: Phase, reason: Reason) -> None:
+    facts = UNSAFE[reason]
+    assert facts.pad is not None
+    off = Cause(Reason.HEADING_OFF_COURSE, (28.0,))
+    unplaced = replace(facts, pad=replace(facts.pad, unplaced=off))
+    decision, _ = first_decision(phase, _before_the_next_phase(unplaced, phase), 3.0)
+    assert decision == (Event.UNSAFE, off)
+
+
 @pytest.mark.parametrize(
     ("test", "phase"), [(test, phase) for test, phase in CASES if test.hold_s(situation(), CONFIG) > 0.0]
 )
