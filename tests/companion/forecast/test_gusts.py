@@ -33,24 +33,27 @@ def learnt(pushes_m_s2: Array, path_m_s2: float = 0.0) -> Gusts:
     return gusts
 
 
-def pushed(std_m_s2: float, noise: float, seed: int) -> Gusts:
-    """What is learnt over two minutes from the reports of a drone that is pushed so, with that share of their noise."""
-    rng, gusts, state = np.random.default_rng(seed), Gusts(), np.zeros((4, 2))
-    truth, forgets_hz = np.zeros((4, 2)), RESPONSE.cascade.forgets_hz
+def pushed(std_m_s2: float, noise: float, seed: int, drones: int = 1) -> list[Gusts]:
+    """What is learnt over two minutes from the reports of drones that are pushed so, with that share of their noise."""
+    rng, axes, forgets_hz = np.random.default_rng(seed), 2 * drones, RESPONSE.cascade.forgets_hz
+    truth, state, gusts = np.zeros((4, axes)), np.zeros((4, axes)), [Gusts()] * drones
     new_m_s2 = std_m_s2 * math.sqrt(1.0 - math.exp(-2.0 * REPORT_S * forgets_hz))
-    errs = noise * np.array([[POSITION_STD_M], [VELOCITY_STD_M_S]])
+    errs, still = noise * np.array([[POSITION_STD_M], [VELOCITY_STD_M_S]]), np.zeros(axes)
     for report in range(6000):
-        truth = RESPONSE.carry(truth, np.zeros(2), REPORT_S)
-        truth[3] += new_m_s2 * rng.standard_normal(2)
-        state = RESPONSE.update(state, truth[:2] + errs * rng.standard_normal((2, 2)), np.zeros(2), REPORT_S)
-        gusts = update_gusts(gusts, round(report * REPORT_S * 1e9), state, np.zeros(2), RESPONSE)
+        truth = RESPONSE.carry(truth, still, REPORT_S)
+        truth[3] += new_m_s2 * rng.standard_normal(axes)
+        state = RESPONSE.update(state, truth[:2] + errs * rng.standard_normal((2, axes)), still, REPORT_S)
+        of_each, reported_ns = np.split(state, drones, axis=1), round(report * REPORT_S * 1e9)
+        gusts = [
+            update_gusts(one, reported_ns, own, np.zeros(2), RESPONSE) for one, own in zip(gusts, of_each, strict=True)
+        ]
     return gusts
 
 
 @pytest.mark.parametrize("noise", [0.0, 1.0])
 @pytest.mark.parametrize("std_m_s2", [0.3, 0.75, 1.5])
 def test_gusts_are_learnt_from_what_pushes_whatever_the_reports_noise(std_m_s2: float, noise: float) -> None:
-    found = np.mean([pushed(std_m_s2, noise, seed).push_std_m_s2 ** 2 for seed in range(4)]) ** 0.5
+    found = np.mean([gusts.push_std_m_s2**2 for gusts in pushed(std_m_s2, noise, 1, drones=4)]) ** 0.5
     assert found == pytest.approx(std_m_s2, rel=0.25, abs=0.12)
 
 
@@ -65,7 +68,8 @@ def test_push_that_is_estimated_anew_is_no_gust() -> None:
 
 def test_reports_without_noise_of_a_drone_that_nothing_pushes_show_no_gusts() -> None:
     assert Gusts().push_std_m_s2 == pytest.approx(0.8 * DRAG_PER_S)  # a gentle breeze
-    assert pushed(0.0, 0.0, 1).push_std_m_s2 < 0.3 * PUSH_STD_M_S2
+    (gusts,) = pushed(0.0, 0.0, 1)
+    assert gusts.push_std_m_s2 < 0.3 * PUSH_STD_M_S2
 
 
 def test_what_the_integrator_still_holds_after_a_hard_flight_is_no_gust() -> None:

@@ -8,7 +8,7 @@ from companion.core.reasons import Reason
 from companion.landing.state.step_data import StepOutputs
 from companion.situation.phases import Phase
 from link.records import replace
-from tests.companion.world import CONFIG, GEAR_M, Flight
+from tests.companion.world import CONFIG, GEAR_M, Flight, configured
 
 DESCENT_LIMIT_S = 15.0  # from the alignment's height down, and the hold of the test
 
@@ -29,12 +29,13 @@ class LowerPad(Flight):
 
 @pytest.mark.slow
 def test_descent_that_touches_nothing_is_broken_off_each_time_until_no_retry_is_left() -> None:
-    flight = LowerPad(lower_m=0.8)
+    retries = 2
+    flight = LowerPad(lower_m=0.8, config=configured({"abort": {"retries_max": retries}}))
     flight.start_and_reach(Phase.DESCEND)
-    for approach in range(CONFIG.abort.retries_max + 1):
+    for approach in range(retries + 1):
         flight.run_until(Phase.ABORT, limit_s=DESCENT_LIMIT_S)
         assert flight.reason is Reason.NOTHING_TOUCHED
-        flight.run_until(Phase.DESCEND if approach < CONFIG.abort.retries_max else Phase.HOLD)
+        flight.run_until(Phase.DESCEND if approach < retries else Phase.HOLD)
     assert flight.reason is Reason.NO_RETRY_LEFT
 
 

@@ -16,7 +16,7 @@ from companion.situation.situation import Situation
 from link.messages import Command, Vector3
 from link.records import replace
 from tests.companion.facts import TICK_NS, pad_at, situation
-from tests.companion.world import CONFIG, DISARM, GEAR_M, STEP_NS, Flight, KnownVehicle, on_deck, reached
+from tests.companion.world import CONFIG, DISARM, GEAR_M, STEP_NS, Flight, KnownVehicle, configured, on_deck, reached
 
 NEAR_M, HEIGHT_M = 3.0, 0.5
 COARSE_M = 1.5
@@ -125,12 +125,14 @@ def test_drone_that_was_disarmed_on_the_deck_starts_its_motors_by_a_new_order_on
     assert flight.history[-2:] == [Phase.ON_DECK, Phase.PILOT]
 
 
-LAUNCH = CONFIG.sortie.launch
+SOON_GIVEN_UP = configured({"sortie": {"launch": {"time_limit_s": 8.0}}})
+LAUNCH = SOON_GIVEN_UP.sortie.launch
 
 
 @pytest.mark.parametrize(("holds", "reason"), [(0.6, Reason.DECK_RESTLESS), (4.0, Reason.ARMING_REFUSED)])
 def test_autopilot_is_said_to_refuse_arming_only_where_it_was_ordered_to(holds: float, reason: Reason) -> None:
     flight = on_deck()
+    flight.config = SOON_GIVEN_UP
     flight.refuses = frozenset({DISARM})  # it is the command that arms
     flight.step(Command.LAUNCH)
     wait(flight, LAUNCH.time_limit_s - holds * LAUNCH.quiet_hold_s, tilt_rad=0.2)

@@ -18,10 +18,12 @@ FASTEST_M_S = 1.0
 
 def _waits(seen_m: float | None, up_m: float = 7.0) -> Situation:
     """A drone whose autopilot says `up_m`, and whose range finder sees something `seen_m` below its feet."""
-    facts = situation()
+    return _up(changed(situation(), range_height_m=seen_m), up_m)
+
+
+def _up(facts: Situation, up_m: float) -> Situation:
     assert facts.drone is not None
-    drone = replace(facts.drone, position_enu_m=np.array([0.0, 0.0, up_m]))
-    return changed(facts, drone=drone, range_height_m=seen_m)
+    return replace(facts, drone=replace(facts.drone, position_enu_m=np.array([0.0, 0.0, up_m])))
 
 
 @pytest.mark.parametrize("too_low_m", [0.1, 1.0, 3.0])
@@ -49,10 +51,9 @@ def test_single_reading_raises_it_by_centimetres() -> None:
 
 
 def test_drone_whose_range_finder_sees_something_everywhere_climbs_to_twice_the_height() -> None:
-    waits_m, dt_s = WAIT_M, 1.0 / CONFIG.setpoints.rate_hz
+    facts, waits_m, dt_s = _waits(1.0), WAIT_M, 1.0 / CONFIG.setpoints.rate_hz
     for _ in range(round(LONG_S / dt_s)):
-        waits_m += rise_from_ground_m(waits_m, _waits(1.0, up_m=waits_m), dt_s, CONFIG)
-    facts = _waits(1.0)
+        waits_m += rise_from_ground_m(waits_m, _up(facts, waits_m), dt_s, CONFIG)
     assert facts.below.ground_enu_m is None
     assert waits_m == pytest.approx(facts.feet_offset_m + 2.0 * WAIT_M)
 
