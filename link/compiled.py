@@ -35,6 +35,9 @@ class _Compiler(event.Listener):  # type: ignore[misc]  # numba has few annotati
 
 event.register("numba:compile", _Compiler())
 
+_OPTIONS: Any = {"fastmath": False, "error_model": "numpy", "no_cfunc_wrapper": True}
+"""No entry from C: no kernel is handed on as a value, and such entries are a twentieth of what compiling costs."""
+
 P = ParamSpec("P")
 R = TypeVar("R")
 
@@ -66,7 +69,7 @@ def kernel(function: Callable[P, R]) -> Kernel[P, R]:
 
     Not kept on disk by itself: numba would go on using it after a change in another file that it calls.
     """
-    return cast("Kernel[P, R]", njit(fastmath=False, error_model="numpy")(function))
+    return cast("Kernel[P, R]", njit(**_OPTIONS)(function))
 
 
 def kept_kernel(sources: int) -> Callable[[Callable[P, R]], Kernel[P, R]]:
@@ -84,7 +87,7 @@ def kept_kernel(sources: int) -> Callable[[Callable[P, R]], Kernel[P, R]]:
         digest = f"{sources ^ _FLAGS:012x}"
         function.__qualname__ += f"_{digest}"
         try:
-            compiled = cast("Kernel[P, R]", njit(cache=True, fastmath=False, error_model="numpy")(function))
+            compiled = cast("Kernel[P, R]", njit(cache=True, **_OPTIONS)(function))
         except RuntimeError as error:  # numba's, after it has tried every place that it knows
             raise UserError(
                 f"machine code cannot be kept: neither {Path(function.__code__.co_filename).parent} nor a cache of "
