@@ -12,9 +12,6 @@ class AlignmentConfig(StrictModel):
 
     height_m: Positive = 1.5  # above the pad
     begin_distance_m: Positive = 1.5  # horizontal, at which alignment begins
-    distance_m: Positive = 0.25
-    speed_m_s: Positive = 0.5  # against the pad, at which it is aligned: S2's limit at contact
-    hold_s: NotNegative = 0.2
     time_limit_s: Positive = 30.0
 
 
@@ -45,9 +42,10 @@ class WaitConfig(StrictModel):
     height_m: Positive = 0.85  # a heaving roof and a late stop leave the drone above `abort.near_height_m`
     # Over a pad that only the detector places, which is blind below 0.5 m: what is known late grows old below.
     height_coarse_m: Positive = 0.7
-    # Above this a pad that only the detector places is waited above, too, until it is within the alignment's distance:
-    # what is made up for below is speed against the pad at contact, and the detector is blind there.
+    # Above this a pad that only the detector places is waited above, too, until it is within that distance: what is
+    # made up for below is speed against the pad at contact, and the detector is blind there.
     centred_height_m: NotNegative = 0.5
+    centred_distance_m: Positive = 0.25  # from the pad's middle; S2 allows 0.3 at contact
 
 
 class RiskConfig(StrictModel):

@@ -21,7 +21,7 @@ from tests.golden.wrong_data import every_third_sighting_is_beside, sightings_ar
 
 SEED = 1
 _PARKED = {"chase": {"parked_wait_s": 0.5}}
-_LONG_ALIGNMENT = {"alignment": {"hold_s": 20.0}}
+_STAYS_TOO_FAST = {"near_speed_max_m_s": 1e-3}  # to end its alignment
 _ANTENNA_OVER_PAD = {"antenna_flu_m": (0.0, 0.0, 1.6)}  # no heading is needed to place the pad
 _RAISED_M = 3.0
 _FAR_WRONG_M = 1.6  # more than a range finder is believed to correct: half of that pad's height over its road
@@ -146,7 +146,7 @@ ABORTS: dict[str, Abort] = {
     "vehicle_silent": Abort(reason=Reason.VEHICLE_DATA_OLD, phase=Phase.ALIGN, fault=_vehicle_falls_silent),
     "vehicle_uncertain": Abort(
         reason=Reason.VEHICLE_UNCERTAIN,
-        companion={"abort": {"fix_age_max_s": 20.0}, "descent": _LONG_ALIGNMENT},
+        companion={"abort": {"fix_age_max_s": 20.0, **_STAYS_TOO_FAST}},
         phase=Phase.ALIGN,
         fault=_vehicle_falls_silent,
     ),
@@ -154,7 +154,7 @@ ABORTS: dict[str, Abort] = {
     "own_position_stops": Abort(reason=Reason.OWN_POSITION_OLD, phase=Phase.ALIGN, fault=_own_position_stops),
     "clock_ahead": Abort(
         reason=Reason.VEHICLE_CLOCK_AHEAD,
-        companion={"descent": _LONG_ALIGNMENT},
+        companion={"abort": _STAYS_TOO_FAST},
         phase=Phase.ALIGN,
         fault=_vehicles_clock_is_set(_AHEAD_S),
     ),
@@ -178,7 +178,7 @@ ABORTS: dict[str, Abort] = {
     ),
     "contradicting": Abort(
         reason=Reason.VEHICLE_CONTRADICTS_ITSELF,
-        companion={"descent": {**_LONG_ALIGNMENT, "strays_max": 20}},
+        companion={"abort": _STAYS_TOO_FAST},
         phase=Phase.ALIGN,
         fault=velocity_is_in_ned,
     ),
@@ -186,7 +186,9 @@ ABORTS: dict[str, Abort] = {
     "below_pad": Abort(reason=Reason.BELOW_PAD, fault=_pad_is_described(forward_m=0.0, up_m=_RAISED_M)),
     "nothing_touched": Abort(
         reason=Reason.NOTHING_TOUCHED,
+        phase=Phase.CHASE,
         fault=_pad_is_described(forward_m=0.0, up_m=_FAR_WRONG_M, over_road_m=_FAR_WRONG_M),
+        within_s=12.0,
     ),
     "setpoints_unheard": Abort(
         reason=Reason.SETPOINTS_UNHEARD,
@@ -214,7 +216,7 @@ ABORTS: dict[str, Abort] = {
         scenario="straight_5+sensors=nominal",
         companion={
             "integrity": {"receiver_frames": "apart"},
-            "descent": {**_LONG_ALIGNMENT, "strays_max": 20},
+            "abort": _STAYS_TOO_FAST,
         },
         phase=Phase.ALIGN,
         fault=every_third_sighting_is_beside,

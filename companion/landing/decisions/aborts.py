@@ -20,6 +20,7 @@ from companion.landing.decisions.conditions import (
     is_fix_old,
     is_heading_to_be_shown,
     is_in_contact,
+    is_sunk,
     is_vehicle_taken,
     tell_taken,
 )
@@ -107,9 +108,10 @@ def _is_contact_risky(s: Situation, c: CompanionConfig) -> bool:
     """Return whether a descent that is committed had better turn back; one that is not waits.
 
     It turns back, too, where it most likely would a moment later, nearer to a pad that is leaving it. One that may be
-    too low for that tries: a pad that it touches as it does, it would touch anyway, sooner and harder.
+    too low for that tries: a pad that it touches as it does, it would touch anyway, sooner and harder. One that has
+    sunk below the pad has no contact before it.
     """
-    if s.contact is None or s.approach is None or s.approach.height_m > c.descent.commit_height_m:
+    if s.contact is None or s.approach is None or s.approach.height_m > c.descent.commit_height_m or is_sunk(s, c):
         return False
     is_risky = s.contact.unsafe > c.descent.risk.turns_back_min or s.contact.broken_off > _MOSTLY
     return is_risky and not _may_stand(s.approach, c) and not _has_touched(s, c)
@@ -237,8 +239,8 @@ ABORTS = (
         is_true=outruns,
         hold_s=lambda _, c: c.chase.driving_hold_s,
     ),
+    *MISSED,
     CONTACT_RISKY,
     Condition(reason=Reason.TOO_FAR_FROM_START, phases=LANDING_PHASES, is_true=is_out_of_range),
-    *MISSED,
 )
 """What makes an approach unsafe, the first that holds first."""

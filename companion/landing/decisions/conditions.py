@@ -171,7 +171,7 @@ def is_below_pad(s: Situation, c: CompanionConfig) -> bool:
     return s.approach is not None and s.approach.height_m < lowest_m
 
 
-def _is_sunk(s: Situation, c: CompanionConfig) -> bool:
+def is_sunk(s: Situation, c: CompanionConfig) -> bool:
     """Return whether the drone is so low that it stands on the pad, which is soon believed, or has none below it."""
     return s.approach is not None and s.approach.height_m < -c.touchdown.lost.missed_depth_m
 
@@ -207,7 +207,7 @@ MISSED = (
     Condition(
         reason=Reason.NOTHING_TOUCHED,
         phases=_DESCENT,
-        is_true=_is_sunk,
+        is_true=is_sunk,
         hold_s=lambda _, c: c.touchdown.lost.missed_hold_s,
     ),
     Condition(

@@ -43,12 +43,7 @@ def _strays_above(s: Situation, c: CompanionConfig) -> bool:
 
 
 def _is_aligned(s: Situation, c: CompanionConfig) -> bool:
-    if s.approach is None or is_pad_unplaced(s, c) or must_be_seen(s, c):
-        return False
-    # A drone that is higher has that much longer to come nearer and to become slower.
-    higher = max(s.approach.height_m / c.descent.alignment.height_m, 1.0)
-    is_over = s.approach.distance_m < higher * c.descent.alignment.distance_m
-    return is_over and s.approach.speed_m_s < higher * c.descent.alignment.speed_m_s
+    return s.approach is not None and not (is_pad_unplaced(s, c) or must_be_seen(s, c) or strays(s, c))
 
 
 def _is_far_off(s: Situation, c: CompanionConfig) -> bool:
@@ -159,9 +154,7 @@ VEHICLE_STANDS = Condition(
 )
 """A vehicle that stands may be about to depart, so it is landed on only after it has stood for a while."""
 
-ALIGNED = Condition(
-    reason=Reason.ALIGNED, phases=_ALIGNMENT, is_true=_is_aligned, hold_s=lambda _, c: c.descent.alignment.hold_s
-)
+ALIGNED = Condition(reason=Reason.ALIGNED, phases=_ALIGNMENT, is_true=_is_aligned)
 
 ENTRIES = (
     (Event.VEHICLE_PASSES, VEHICLE_STANDS),

@@ -64,7 +64,7 @@ def _find_awaited(memory: StepMemory, situation: Situation, config: CompanionCon
     if strays(situation, config):
         return Cause(Reason.NOT_OVER_PAD)
     if _is_off_centre(situation, relative, config):
-        return Cause(Reason.OFF_CENTRE, (config.descent.alignment.distance_m,))
+        return Cause(Reason.OFF_CENTRE, (config.descent.wait.centred_distance_m,))
     return None
 
 
@@ -75,7 +75,7 @@ def _is_off_centre(situation: Situation, relative: Approach, config: CompanionCo
     """
     if situation.pad is None or not situation.pad.is_coarse or relative.height_m < config.descent.wait.centred_height_m:
         return False
-    return relative.distance_m > config.descent.alignment.distance_m
+    return relative.distance_m > config.descent.wait.centred_distance_m
 
 
 def _find_risk(memory: StepMemory, situation: Situation, config: CompanionConfig) -> Cause | None:

@@ -114,4 +114,4 @@ def test_thresholds_of_the_landing_are_in_order() -> None:
     assert config.descent.commit_height_m < config.descent.alignment.height_m <= config.chase.height_m
     assert config.touchdown.height_max_m < config.touchdown.lost.height_m < config.abort.height_m
     assert config.touchdown.blocked_depth_m < config.descent.sink.press_depth_m
-    assert config.descent.alignment.distance_m < config.descent.alignment.begin_distance_m
+    assert config.descent.wait.centred_distance_m < config.descent.alignment.begin_distance_m

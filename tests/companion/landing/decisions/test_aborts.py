@@ -49,7 +49,7 @@ CASES = [(test, phase) for test in ABORTS for phase in Phase if phase in test.ph
 
 def _before_the_next_phase(facts: Situation, phase: Phase) -> Situation:
     """The same with the drone beside the pad, so that an approach goes on from `phase` by nothing but an abort."""
-    beside_m = {Phase.CHASE: 2.0, Phase.ALIGN: 0.5}.get(phase, 0.0) * CONFIG.descent.alignment.begin_distance_m
+    beside_m = {Phase.CHASE: 2.0, Phase.ALIGN: 1.0}.get(phase, 0.0) * CONFIG.descent.alignment.begin_distance_m
     if facts.drone is None:
         return facts
     place = facts.drone.position_enu_m + np.array([beside_m, 0.0, 0.0])

@@ -193,10 +193,10 @@ def test_straying_is_unsafe_once_it_has_been_aligned_again_for_so_often(strays: 
 @pytest.mark.parametrize(
     ("beside_m", "height_m", "is_coarse", "waits"),
     [
-        (DESCENT.alignment.distance_m + 0.01, 0.9, True, True),
-        (DESCENT.alignment.distance_m - 0.01, 0.9, True, False),
-        (DESCENT.alignment.distance_m + 0.01, 0.9, False, False),
-        (DESCENT.alignment.distance_m + 0.01, 0.95 * DESCENT.wait.centred_height_m, True, False),
+        (DESCENT.wait.centred_distance_m + 0.01, 0.9, True, True),
+        (DESCENT.wait.centred_distance_m - 0.01, 0.9, True, False),
+        (DESCENT.wait.centred_distance_m + 0.01, 0.9, False, False),
+        (DESCENT.wait.centred_distance_m + 0.01, 0.95 * DESCENT.wait.centred_height_m, True, False),
     ],
     ids=["beside", "centred", "placed by fixes", "already below"],
 )
