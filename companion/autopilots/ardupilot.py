@@ -23,12 +23,13 @@ from companion.autopilots.messages import (
     ASK_AGAIN_S,
     Requested,
     ask,
+    ask_for_control,
     ask_to_arm,
     ask_to_disarm,
     local_ned_setpoint,
     set_mode,
     take_off,
-    with_arming_answer,
+    with_answer,
     without_past_orders,
 )
 from companion.autopilots.response import Cascade, Shaping
@@ -127,7 +128,7 @@ class ArduPilotDriver:
         if desire.release and view.in_control:
             return ask(memory, set_mode(_BRAKE), monotonic_ns)
         if desire.control and not view.in_control:
-            return ask(memory, set_mode(_GUIDED), monotonic_ns)
+            return ask_for_control(memory, set_mode(_GUIDED), monotonic_ns)
         if desire.armed and not view.armed:
             return ask_to_arm(memory, monotonic_ns)
         if climbs and desire.takeoff_height_m is not None and view.armed and view.landed is not False:
@@ -135,10 +136,10 @@ class ArduPilotDriver:
         return memory, ()
 
     def acknowledged(self, memory: DriverMemory, command: int, result: int) -> DriverMemory:
-        """Note what came of arming and disarming, and whether it takes off."""
+        """Note what came of a mode, of arming and of disarming, and whether it takes off."""
         if command == mavlink.MAV_CMD_NAV_TAKEOFF:
             return replace(memory, takeoff_accepted=result == mavlink.MAV_RESULT_ACCEPTED)
-        return with_arming_answer(memory, command, result)
+        return with_answer(memory, command, result)
 
     def setpoint_message(self, setpoint: Setpoint, boot_ms: int, target_system: int) -> Message:
         """Return SET_POSITION_TARGET_LOCAL_NED; a group of it that is masked in part would mean "stop"."""

@@ -32,6 +32,7 @@ class AutopilotView(Struct, frozen=True, kw_only=True):
     in_control: bool  # it is in the mode in which it follows the companion's setpoints
     failsafe: bool  # in which it flies by itself
     mode: int | None = None  # by its own number
+    mode_told: bool = False  # since an order for another one was accepted
     disarm_told: bool = False  # by the last heartbeat, or an order that was accepted: it counts with the next one
     warns: bool = False  # it reports a failsafe, and follows the setpoints on
     overruled: bool = False  # by a failsafe: another mode than was last asked for is flown
@@ -83,13 +84,15 @@ class DriverMemory(Struct, frozen=True, kw_only=True):
     """When the driver last asked for what, and what was refused.
 
     While the autopilot `climbs_by_itself` it is sent no setpoints. Once it has accepted to arm it is not asked again: a
-    person, or the autopilot itself, stops the motors then.
+    person, or the autopilot itself, stops the motors then. Nor is it asked again for a mode that it has accepted.
     """
 
     streaming_since_ns: int | None = None
     asked_ns: Mapping[AutopilotCommand, int] | None = None
     disarm_asked: bool = False
     disarm_refusals: int = 0
+    control_asked_ns: int | None = None  # monotonic, the newest order of the companion's mode; None while none counts
+    control_accepted: bool = False  # and not refused since
     arm_asked: bool = False
     arm_accepted: bool = False  # and not refused since
     takeoff_accepted: bool = False  # the last one that was asked for

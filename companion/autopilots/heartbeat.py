@@ -29,6 +29,7 @@ def with_heartbeat(view: AutopilotView, message: Message, driver: Driver) -> Aut
         refusal=None if armed else view.refusal,
         in_control=in_control,
         mode=message.custom_mode,
+        mode_told=True,
         failsafe=reports and not warns,
         warns=warns,
         restarted=view.restarted and not in_control,
@@ -38,10 +39,14 @@ def with_heartbeat(view: AutopilotView, message: Message, driver: Driver) -> Aut
 def with_acknowledgement(view: AutopilotView, answer: CommandAcknowledged) -> AutopilotView:
     """Return the view after an answer; while it is armed, only a disarm can have been asked for.
 
-    While it is not, it is an arming, mostly: what heartbeats told before that counts no more.
+    While it is not, it is an arming, mostly: what heartbeats told before that counts no more. Nor does the mode that
+    was told before another one was accepted.
     """
-    is_accepted = answer.result == mavlink.MAV_RESULT_ACCEPTED
-    switches = is_accepted and answer.command == mavlink.MAV_CMD_COMPONENT_ARM_DISARM
+    if answer.result != mavlink.MAV_RESULT_ACCEPTED:
+        return view
+    if answer.command == mavlink.MAV_CMD_DO_SET_MODE:
+        return replace(view, mode_told=False)
+    switches = answer.command == mavlink.MAV_CMD_COMPONENT_ARM_DISARM
     return replace(view, disarm_told=view.armed) if switches else view
 
 
@@ -53,7 +58,7 @@ def with_mode(view: AutopilotView, message: Message, driver: Driver) -> Autopilo
     custom = mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED
     in_control = driver.is_in_control(custom, message.custom_mode)
     overruled = not in_control and driver.is_in_control(custom, message.intended_custom_mode)
-    return replace(view, in_control=in_control, mode=message.custom_mode, overruled=overruled)
+    return replace(view, in_control=in_control, mode=message.custom_mode, mode_told=True, overruled=overruled)
 
 
 def with_landed_state(view: AutopilotView, message: Message) -> AutopilotView:

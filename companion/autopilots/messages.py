@@ -8,7 +8,7 @@ from link.mavlink.requests import ONCE, Retries
 from link.records import replace
 
 ASK_AGAIN_S = 1.0  # the heartbeat that confirms a mode may be a second late
-ARMED_TOLD_S = 2.0  # after the order, at the latest: a heartbeat a second, and the link's way there and back
+TOLD_S = 2.0  # what came of an order, after it, at the latest: a heartbeat a second, and the link's way there and back
 _DISARM_AGAIN_S = 0.2  # even without an answer: a lost command lets the drone slide for as long
 _CUSTOM_MODE_FLAG = 1.0  # MAV_MODE_FLAG_CUSTOM_MODE_ENABLED
 _FORCE_DISARM = 21196.0  # MAVLink common, MAV_CMD_COMPONENT_ARM_DISARM, parameter 2
@@ -83,7 +83,9 @@ def ask_to_disarm(memory: DriverMemory, desire: Desire, monotonic_ns: int) -> Re
 
 
 def without_past_orders(memory: DriverMemory, desire: Desire) -> DriverMemory:
-    """Return the memory of a step that wants no disarm, without that order, and without an arming no longer wanted."""
+    """Return the memory of a step that wants no disarm, without that order, and without others no longer wanted."""
+    if memory.control_asked_ns is not None and not desire.control:
+        memory = replace(memory, control_asked_ns=None, control_accepted=False)
     if memory.arm_asked and not desire.armed:
         memory = replace(memory, arm_asked=False, arm_accepted=False)
     if not (memory.disarm_asked or memory.disarm_refusals):
@@ -91,15 +93,35 @@ def without_past_orders(memory: DriverMemory, desire: Desire) -> DriverMemory:
     return replace(memory, disarm_asked=False, disarm_refusals=0)
 
 
-def with_arming_answer(memory: DriverMemory, command: int, result: int) -> DriverMemory:
-    """Count refused disarms, and remember an accepted arming; an answer to one is none to the other."""
+def with_answer(memory: DriverMemory, command: int, result: int) -> DriverMemory:
+    """Count refused disarms, remember an accepted arming, an answer to one being none to the other, and a mode."""
+    is_accepted = result == mavlink.MAV_RESULT_ACCEPTED
+    if command == mavlink.MAV_CMD_DO_SET_MODE and memory.control_asked_ns is not None:
+        return replace(memory, control_accepted=is_accepted)
     if command != mavlink.MAV_CMD_COMPONENT_ARM_DISARM or result == mavlink.MAV_RESULT_IN_PROGRESS:
         return memory
-    is_accepted = result == mavlink.MAV_RESULT_ACCEPTED
     if memory.arm_asked:
         return replace(memory, arm_accepted=is_accepted)
     is_refused = memory.disarm_asked and not is_accepted
     return replace(memory, disarm_refusals=memory.disarm_refusals + 1) if is_refused else memory
+
+
+def ask_for_control(memory: DriverMemory, mode: AutopilotCommand, monotonic_ns: int) -> Requested:
+    """Ask for a mode until that is accepted."""
+    if memory.control_accepted:
+        return memory, ()
+    memory, commands = ask(memory, mode, monotonic_ns)
+    return (replace(memory, control_asked_ns=monotonic_ns) if commands else memory), commands
+
+
+def was_control_undone(memory: DriverMemory, view: AutopilotView, monotonic_ns: int) -> bool:
+    """Return whether another mode is flown than the companion's, which was accepted: somebody has changed it since.
+
+    It counts some time after the order, as with the motors.
+    """
+    if not memory.control_accepted or memory.control_asked_ns is None or view.in_control:
+        return False
+    return view.mode_told and (monotonic_ns - memory.control_asked_ns) * 1e-9 >= TOLD_S
 
 
 def ask_to_arm(memory: DriverMemory, monotonic_ns: int) -> Requested:
@@ -127,7 +149,7 @@ def arm(*, armed: bool, force: bool = False) -> AutopilotCommand:
 def is_arming(memory: DriverMemory, monotonic_ns: int) -> bool:
     """Return whether motors were asked for so lately that they may turn before anything has told so."""
     asked_ns = (memory.asked_ns or {}).get(arm(armed=True))
-    return asked_ns is not None and (monotonic_ns - asked_ns) * 1e-9 < ARMED_TOLD_S
+    return asked_ns is not None and (monotonic_ns - asked_ns) * 1e-9 < TOLD_S
 
 
 def may_turn(view: AutopilotView, memory: DriverMemory, monotonic_ns: int) -> bool:

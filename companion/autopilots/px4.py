@@ -19,11 +19,12 @@ from companion.autopilots.limits import (
 from companion.autopilots.messages import (
     Requested,
     ask,
+    ask_for_control,
     ask_to_arm,
     ask_to_disarm,
     local_ned_setpoint,
     set_mode,
-    with_arming_answer,
+    with_answer,
     without_past_orders,
 )
 from companion.autopilots.px4_events import refusal_of
@@ -91,17 +92,17 @@ class Px4Driver:
         if desire.release and view.in_control:
             return ask(memory, set_mode(_MAIN_MODE_AUTO, _SUB_MODE_LOITER), monotonic_ns)
         if desire.control and not view.in_control and _streamed_s(memory, monotonic_ns) >= _STREAM_FIRST_S:
-            return ask(memory, set_mode(_MAIN_MODE_OFFBOARD), monotonic_ns)
+            return ask_for_control(memory, set_mode(_MAIN_MODE_OFFBOARD), monotonic_ns)
         if desire.armed and view.in_control and not view.armed:
             return ask_to_arm(memory, monotonic_ns)
         return memory, ()
 
     def acknowledged(self, memory: DriverMemory, command: int, result: int) -> DriverMemory:
-        """Note what came of arming and disarming.
+        """Note what came of a mode, of arming and of disarming.
 
-        Of a mode's two acknowledgements the first says nothing, its confirmation does.
+        Of a mode's two acknowledgements the second counts; the first one always accepts.
         """
-        return with_arming_answer(memory, command, result)
+        return with_answer(memory, command, result)
 
     def setpoint_message(self, setpoint: Setpoint, boot_ms: int, target_system: int) -> Message:
         """Return SET_POSITION_TARGET_LOCAL_NED."""

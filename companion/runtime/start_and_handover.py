@@ -3,7 +3,7 @@
 import time
 from collections.abc import Callable
 
-from companion.autopilots.messages import ARMED_TOLD_S, may_turn
+from companion.autopilots.messages import TOLD_S, may_turn
 from companion.runtime.node import CompanionNode
 from companion.situation.phases import Phase
 from link.errors import UserError
@@ -76,7 +76,7 @@ def _is_another_there(node: CompanionNode) -> bool:
     return rival is not None and rival.is_this_drone
 
 
-LEAVE_MAX_S = ARMED_TOLD_S + 1.0
+LEAVE_MAX_S = TOLD_S + 1.0
 """So long an end in flight may take: motors just asked for are told of by then, and what came next by a heartbeat."""
 
 

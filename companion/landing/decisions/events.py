@@ -2,7 +2,7 @@
 
 import math
 
-from companion.autopilots.messages import is_arming, may_turn, was_arming_undone, was_asked_to_arm
+from companion.autopilots.messages import is_arming, may_turn, was_asked_to_arm
 from companion.config.companion import CompanionConfig
 from companion.config.planning import LandingStyle
 from companion.core.reasons import Cause, Reason
@@ -28,6 +28,7 @@ from companion.landing.decisions.conditions import (
 from companion.landing.decisions.entries import DRIVES, ENTRIES, Decision, vehicle_passes
 from companion.landing.decisions.feasibility import is_drone_taken, obstacle
 from companion.landing.decisions.retries import end_climb
+from companion.landing.decisions.taken_control import find_taken_control
 from companion.landing.decisions.waiting import waited_s
 from companion.landing.state.memory import ControlMemory, Held, Progress
 from companion.situation.phases import FLYING_PHASES, LANDING_PHASES, Event, Phase
@@ -48,7 +49,7 @@ def decide(progress: Progress, control: ControlMemory, s: Situation, config: Com
         return Event.PILOT_TOOK_OVER, Cause(Reason.AUTOPILOT_LOST)
     if progress.phase in FLYING_PHASES and is_drone_taken(s, config):
         return Event.PILOT_TOOK_OVER, Cause(Reason.DRONE_TAKEN)
-    taken = _find_taken_control(progress.phase, control, s)
+    taken = find_taken_control(progress.phase, control, s)
     if taken is not None:
         return taken
     # What the pad stops is fast against a pad that drives on: it would be taken for unsafe in the same step.
@@ -94,31 +95,6 @@ def _is_committed(s: Situation, config: CompanionConfig) -> bool:
         and is_over_pad(relative, config)
         and relative.speed_m_s < config.abort.near_speed_max_m_s
     )
-
-
-def _find_taken_control(phase: Phase, control: ControlMemory, s: Situation) -> Decision | None:
-    is_switched = not s.autopilot.in_control and s.autopilot.mode != control.mode_before  # before it was in control
-    if phase not in FLYING_PHASES or not (control.was_in_control or is_switched):
-        return None
-    if s.autopilot.failsafe or s.autopilot.overruled:
-        return Event.PILOT_TOOK_OVER, Cause(Reason.AUTOPILOT_FAILSAFE)
-    is_off_told = s.autopilot.disarm_told or not s.autopilot.armed
-    if phase is Phase.TOUCHDOWN and is_off_told:
-        return None  # as wanted; a mode that changes with it is not the pilot's
-    if not s.autopilot.in_control:
-        return Event.PILOT_TOOK_OVER, Cause(_why_not_in_control(control, s, is_off_told=is_off_told))
-    # On a deck, too: a person did it, or the autopilot's time was over, and nobody expects the motors to start again.
-    is_undone = was_arming_undone(control.driver, s.autopilot, s.monotonic_ns)
-    if is_undone or (control.was_armed and not s.autopilot.armed):
-        return Event.PILOT_TOOK_OVER, Cause(Reason.DISARMED)
-    return None
-
-
-def _why_not_in_control(control: ControlMemory, s: Situation, *, is_off_told: bool) -> Reason:
-    """Return why another mode is flown: one that comes with motors that have stopped is no pilot's choice."""
-    if s.autopilot.restarted:
-        return Reason.AUTOPILOT_RESTARTED
-    return Reason.DISARMED if control.was_armed and is_off_told else Reason.MODE_CHANGED
 
 
 TOO_LONG = {

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from companion.autopilots.driver import DriverMemory
-from companion.autopilots.messages import ARMED_TOLD_S, arm
+from companion.autopilots.messages import TOLD_S, arm
 from companion.core.reasons import Reason
 from companion.landing.decisions.events import decide
 from companion.landing.sortie.riding import CARRIED_OFF, call_off
@@ -63,7 +63,7 @@ def test_take_off_of_a_drone_that_is_carried_off_for_long_enough_is_called_off(e
     assert call_off({Reason.RIDES_ALONG: NOW_NS}, IN_CONTROL, facts, CONFIG) is None
 
 
-ARMING = [(0.0, True), (0.9 * ARMED_TOLD_S, True), (ARMED_TOLD_S, False)]
+ARMING = [(0.0, True), (0.9 * TOLD_S, True), (TOLD_S, False)]
 
 
 def asked_to_arm(ago_s: float) -> ControlMemory:
@@ -101,5 +101,5 @@ def test_take_off_ends_on_the_vehicle_that_drives_off_with_the_motors_off() -> N
     assert drives
     assert (flight.phase, flight.reason) == (Phase.TOUCHDOWN, Reason.RIDES_ALONG)
     assert flight.told(DISARM)[-1][2] == 0.0
-    flight.run(ARMED_TOLD_S)
+    flight.run(TOLD_S)
     assert (flight.phase, flight.reason) == (Phase.IDLE, Reason.RIDES_ALONG)
