@@ -34,6 +34,7 @@ class AutopilotView(Struct, frozen=True, kw_only=True):
     mode: int | None = None  # by its own number
     mode_told: bool = False  # since an order for another one was accepted
     disarm_told: bool = False  # by the last heartbeat, or an order that was accepted: it counts with the next one
+    killed: bool = False  # its motors are kept still, armed or not, by a switch or a termination: they may turn again
     warns: bool = False  # it reports a failsafe, and follows the setpoints on
     overruled: bool = False  # by a failsafe: another mode than was last asked for is flown
     restarted: bool = False  # and not in control since

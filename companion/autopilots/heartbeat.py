@@ -2,6 +2,10 @@
 
 One heartbeat that says "disarmed" may be anybody's, or a forger's: it counts once it is told again, or at once where a
 disarm was asked for and accepted. Until then the motors may turn.
+
+PX4 whose kill switch is on stays armed and in its mode, and tells FLIGHT_TERMINATION. Once the switch is released the
+motors turn again, until `COM_KILL_DISARM` has disarmed it. ArduCopter tells of its emergency stop nowhere.
+Source: PX4's streams/HEARTBEAT.hpp, actuator_armed; ArduCopter's GCS_MAVLINK_Copter::vehicle_system_status.
 """
 
 from companion.autopilots.driver import AutopilotView, Driver
@@ -31,6 +35,7 @@ def with_heartbeat(view: AutopilotView, message: Message, driver: Driver) -> Aut
         mode=message.custom_mode,
         mode_told=True,
         failsafe=reports and not warns,
+        killed=message.system_status == mavlink.MAV_STATE_FLIGHT_TERMINATION,
         warns=warns,
         restarted=view.restarted and not in_control,
     )

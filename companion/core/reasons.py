@@ -115,6 +115,7 @@ class Reason(Enum):
     AUTOPILOT_FAILSAFE = "autopilot failsafe"
     AUTOPILOT_RESTARTED = "autopilot restarted"
     MODE_CHANGED = "mode changed by the pilot"
+    MOTORS_KILLED = "motors stopped by the kill switch or a flight termination"
     DISARMED = "disarmed"
     CONTROL_REFUSED = "the autopilot did not give control in time"
     ARMING_REFUSED = "the autopilot did not arm in time: {}"

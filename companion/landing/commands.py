@@ -177,5 +177,6 @@ def _missing_for_start(situation: Situation) -> Cause | None:
         Reason.NO_OWN_POSITION: drone is None,
         Reason.NO_OWN_ATTITUDE: drone is not None and not drone.attitude_known,
         Reason.IN_FAILSAFE: view.failsafe,
+        Reason.MOTORS_KILLED: view.killed,
     }
     return next((Cause(reason) for reason, is_missing in missing.items() if is_missing), None)

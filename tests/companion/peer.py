@@ -38,6 +38,7 @@ class FakePx4(FakeAutopilot):
     vehicle_type: int = mavlink.MAV_TYPE_QUADROTOR
     utc_set_by_ns: int = 0
     landed_state: int = mavlink.MAV_LANDED_STATE_ON_GROUND
+    system_status: int = mavlink.MAV_STATE_ACTIVE
     now_ns: int = START_NS
 
     def message(self, message_id: int, t_ns: int) -> Message:
@@ -63,8 +64,9 @@ class FakePx4(FakeAutopilot):
     def _heartbeat(self) -> Message:
         base = mavlink.MAV_MODE_FLAG_CUSTOM_MODE_ENABLED
         base |= mavlink.MAV_MODE_FLAG_SAFETY_ARMED if self.armed else 0
-        active = mavlink.MAV_STATE_ACTIVE
-        return mavlink.MAVLink_heartbeat_message(self.vehicle_type, self.firmware, base, self.custom_mode, active, 3)
+        return mavlink.MAVLink_heartbeat_message(
+            self.vehicle_type, self.firmware, base, self.custom_mode, self.system_status, 3
+        )
 
     def _current_mode(self) -> Message:
         return mavlink.MAVLink_current_mode_message(0, self.custom_mode, self.custom_mode)

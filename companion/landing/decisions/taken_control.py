@@ -10,20 +10,27 @@ from companion.situation.situation import Situation
 
 def find_taken_control(phase: Phase, control: ControlMemory, s: Situation) -> Decision | None:
     """Return that somebody else flies, with the reason; None while the companion does, or is still to begin."""
-    if phase not in FLYING_PHASES or not (control.was_in_control or _is_switched(control, s)):
+    if phase not in FLYING_PHASES:
+        return None
+    is_killed = s.autopilot.killed and phase is not Phase.TOUCHDOWN  # on the pad that is as wanted
+    reason = Reason.MOTORS_KILLED if is_killed else _why_taken(phase, control, s)
+    return None if reason is None else (Event.PILOT_TOOK_OVER, Cause(reason))
+
+
+def _why_taken(phase: Phase, control: ControlMemory, s: Situation) -> Reason | None:
+    """Return why somebody else flies, None if nobody else does."""
+    if not (control.was_in_control or _is_switched(control, s)):
         return None
     if s.autopilot.failsafe or s.autopilot.overruled:
-        return Event.PILOT_TOOK_OVER, Cause(Reason.AUTOPILOT_FAILSAFE)
+        return Reason.AUTOPILOT_FAILSAFE
     is_off_told = s.autopilot.disarm_told or not s.autopilot.armed
     if phase is Phase.TOUCHDOWN and is_off_told:
         return None  # as wanted; a mode that changes with it is not the pilot's
     if not s.autopilot.in_control:
-        return Event.PILOT_TOOK_OVER, Cause(_why_not_in_control(control, s, is_off_told=is_off_told))
+        return _why_not_in_control(control, s, is_off_told=is_off_told)
     # On a deck, too: a person did it, or the autopilot's time was over, and nobody expects the motors to start again.
     is_undone = was_arming_undone(control.driver, s.autopilot, s.monotonic_ns)
-    if is_undone or (control.was_armed and not s.autopilot.armed):
-        return Event.PILOT_TOOK_OVER, Cause(Reason.DISARMED)
-    return None
+    return Reason.DISARMED if is_undone or (control.was_armed and not s.autopilot.armed) else None
 
 
 def _why_not_in_control(control: ControlMemory, s: Situation, *, is_off_told: bool) -> Reason:

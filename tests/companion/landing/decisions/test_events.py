@@ -105,6 +105,14 @@ def test_mode_that_the_autopilot_changed_by_itself_is_not_said_to_be_the_pilots(
     assert decided(progress(Phase.ALIGN), facts, {}) == (Event.PILOT_TOOK_OVER, Cause(Reason.AUTOPILOT_FAILSAFE))
 
 
+@pytest.mark.parametrize("phase", FLYING)
+def test_motors_that_are_killed_are_the_pilots_but_on_the_pad(phase: Phase) -> None:
+    facts = situation(HIGH_M)
+    facts = replace(facts, autopilot=replace(facts.autopilot, killed=True))
+    killed = (Event.PILOT_TOOK_OVER, Cause(Reason.MOTORS_KILLED))
+    assert (decided(progress(phase), facts, {}) == killed) is (phase is not Phase.TOUCHDOWN)
+
+
 def test_restart_is_not_said_to_be_the_pilots() -> None:
     facts = situation(HIGH_M)
     facts = replace(facts, autopilot=replace(facts.autopilot, in_control=False, armed=False, restarted=True))
