@@ -44,7 +44,7 @@ _TAKE_OFF_AGAIN_S = 5.0  # once it was accepted: it lifts off 3.5 to 4 s later
 _CENTI = 0.01
 _TILT_DEG = 30.0  # taken while the parameter is unknown: its default
 _TILT_MAX_DEG = 45.0  # nothing is planned beyond
-# Each with its name up to release 4.6, in centimetres or centidegrees, and from 4.7 on.
+# Each with its name up to release 4.6, in centimetres or centidegrees, and from 4.7 on; the jerks' changed in it twice.
 _TILT = (Named("ANGLE_MAX", _CENTI, TILT_LEAST_DEG), Named("ATC_ANGLE_MAX", least=TILT_LEAST_DEG))
 _TILT_BY_POSITION = (Named("PSC_ANGLE_MAX", least=TILT_LEAST_DEG),)  # the smaller one counts; 0, the default, is none
 _SPEED = (Named("WPNAV_SPEED", _CENTI), Named("WP_SPD"))
@@ -54,7 +54,7 @@ _DESCENT = (Named("WPNAV_SPEED_DN", _CENTI), Named("WP_SPD_DN"))
 # PSC_JERK_Z is stated from 5 on, and is landed with at less.
 _JERK_LEAST_M_S3, _ACCELERATION_LEAST_M_S2 = 1.0, 0.5
 # It follows no acceleration that changes faster.
-_JERK = tuple(Named(name, least=_JERK_LEAST_M_S3) for name in ("PSC_JERK_XY", "PSC_JERK_NE"))
+_JERK = tuple(Named(name, least=_JERK_LEAST_M_S3) for name in ("PSC_JERK_XY", "PSC_JERK_NE", "PSC_NE_JERK"))
 # It bounds that jerk by what its attitude controller can do, too (AC_PosControl::set_max_speed_accel_xy).
 _ACCELERATION = (
     Named("WPNAV_ACCEL", _CENTI, _ACCELERATION_LEAST_M_S2),
@@ -65,7 +65,7 @@ _VERTICAL_ACCELERATION = (
     Named("WPNAV_ACCEL_Z", _CENTI, _ACCELERATION_LEAST_M_S2),
     Named("WP_ACC_Z", least=_ACCELERATION_LEAST_M_S2),
 )
-_VERTICAL_JERK = tuple(Named(name, least=_JERK_LEAST_M_S3) for name in ("PSC_JERK_Z", "PSC_JERK_D"))
+_VERTICAL_JERK = tuple(Named(name, least=_JERK_LEAST_M_S3) for name in ("PSC_JERK_Z", "PSC_JERK_D", "PSC_D_JERK"))
 _LIMITS = (
     _TILT,
     _TILT_BY_POSITION,

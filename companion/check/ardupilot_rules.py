@@ -1,7 +1,8 @@
 """What ArduCopter's parameters must be for a landing on a moving vehicle, by their names up to 4.6 and from 4.7 on.
 
 Source: ArduCopter parameter reference; 4.7 renamed to SI units (ANGLE_MAX in 0.01 deg became ATC_ANGLE_MAX in deg,
-WPNAV_SPEED in cm/s WP_SPD in m/s). Effects as measured on its software-in-the-loop simulation.
+WPNAV_SPEED in cm/s WP_SPD in m/s), and PSC_JERK_NE and _D
+once more before 4.7.1 (PSC_NE_JERK, PSC_D_JERK). Effects as measured on its software-in-the-loop simulation.
 """
 
 from companion.check.findings import Level
@@ -26,6 +27,7 @@ _CORRECTED_PER_S = (
     2.0  # jerk by acceleration, as by default; corrected faster, the jitter of setpoints takes all the jerk
 )
 _NO_STABILISATION = 0b110000  # bits 4 and 5: positions, velocities are not held
+_ELLIPSOID_HEIGHTS = 0b10000  # bit 4 (AP_GPS_Backend::set_alt_amsl_cm, AP_GPS::send_mavlink_gps_raw)
 _GUIDED_LOSS_S, _GUIDED_LOSS_ADVISED_S = (0.5, 1.5), 1.0
 _DISARM_DELAY_MIN_S = 5.0
 _EKF_ACTIONS = (1, 3)
@@ -61,7 +63,7 @@ ARDUPILOT_RULES = (
     at_least(
         lambda _: _JERK_M_S3,
         step=1.0,
-        spellings=(Spelling("PSC_JERK_NE"), Spelling("PSC_JERK_XY")),
+        spellings=(Spelling("PSC_NE_JERK"), Spelling("PSC_JERK_NE"), Spelling("PSC_JERK_XY")),
         unit="m/s^3",
         level=Level.WARN,
         reason="how quickly it leans otherwise; with 5 a vehicle that brakes or turns is caught up with late",
@@ -78,7 +80,7 @@ ARDUPILOT_RULES = (
     at_least(
         lambda _: _VERTICAL_JERK_M_S3,
         step=1.0,
-        spellings=(Spelling("PSC_JERK_D"), Spelling("PSC_JERK_Z")),
+        spellings=(Spelling("PSC_D_JERK"), Spelling("PSC_JERK_D"), Spelling("PSC_JERK_Z")),
         unit="m/s^3",
         level=Level.WARN,
         reason="how quickly a sink turns into a climb; with 10 an abort low above a pad that brakes still touches it",
@@ -97,6 +99,14 @@ ARDUPILOT_RULES = (
         test=lambda value, _: not int(value) & _NO_STABILISATION,
         advised=lambda value, _: float(int(value) & ~_NO_STABILISATION),
         reason="bits 4 and 5 switch off the holding of position and velocity",
+    ),
+    ParameterRule(
+        spellings=(Spelling("GPS_DRV_OPTIONS"),),
+        unit="",
+        level=Level.FAIL,
+        test=lambda value, _: not int(value) & _ELLIPSOID_HEIGHTS,
+        advised=lambda value, _: float(int(value) & ~_ELLIPSOID_HEIGHTS),
+        reason="bit 4 flies heights above the ellipsoid and tells them as above the sea: the geoid is counted twice",
     ),
     equals(
         0.0,

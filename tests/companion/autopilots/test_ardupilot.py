@@ -139,6 +139,7 @@ def test_refused_arming_is_read_from_its_text(text: str, reason: str | None) -> 
             "PSC_JERK_XY": 5.0,
         },
         {"WP_SPD": 7.0, "WP_SPD_UP": 2.1, "WP_SPD_DN": 1.1, "ATC_ANGLE_MAX": 22.0, "PSC_JERK_NE": 5.0},
+        {"WP_SPD": 7.0, "WP_SPD_UP": 2.1, "WP_SPD_DN": 1.1, "ATC_ANGLE_MAX": 22.0, "PSC_NE_JERK": 5.0},
     ],
 )
 def test_limits_are_read_by_the_names_of_old_and_new_releases(parameters: dict[str, float]) -> None:
