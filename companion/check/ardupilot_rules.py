@@ -1,8 +1,8 @@
 """What ArduCopter's parameters must be for a landing on a moving vehicle, by their names up to 4.6 and from 4.7 on.
 
 Source: ArduCopter parameter reference; 4.7 renamed to SI units (ANGLE_MAX in 0.01 deg became ATC_ANGLE_MAX in deg,
-WPNAV_SPEED in cm/s WP_SPD in m/s), and PSC_JERK_NE and _D
-once more before 4.7.1 (PSC_NE_JERK, PSC_D_JERK). Effects as measured on its software-in-the-loop simulation.
+WPNAV_SPEED in cm/s WP_SPD in m/s), and 4.7.1 PSC_JERK_NE and _D once more, to PSC_NE_JERK and PSC_D_JERK. Effects as
+measured on its software-in-the-loop simulation.
 """
 
 from companion.check.findings import Level

@@ -15,6 +15,7 @@ MOTION = ("LOCAL_POSITION_NED", "ATTITUDE_QUATERNION")
 _MOTION_RATE_MIN_HZ = 40.0
 _LATENCY_MAX_S = 0.1
 _CLOCK_STD_MAX_S = 0.02
+_UTC_OFF_MAX_S = 0.02  # likewise, and what NTP keeps a computer to on a network
 _BATTERY_SPARE = 0.1  # beyond what no landing is begun below
 _BATTERY_GOOD = 0.3  # likewise
 
@@ -40,7 +41,7 @@ def assess(
     """
     found = [_firmware(autopilot, config.autopilot.kind), *_shared_id(autopilot)]
     found += [_readiness(autopilot), _origin(autopilot)]
-    found += [_heights(autopilot, config.autopilot.geoid_height_m), _clock(autopilot)]
+    found += [_heights(autopilot, config.autopilot.geoid_height_m), _clock(autopilot), *_utc(autopilot, speed_m_s)]
     found += [_rate(autopilot, name) for name in MOTION]
     found += [_latency(autopilot), _battery(autopilot, config.limits.battery_min_share)]
     found.append(_range_finder(autopilot))
@@ -119,6 +120,26 @@ def _clock(seen: AutopilotFacts) -> Finding:
     return make_finding(
         "clock", text, level, "use a faster link: the vehicle's place is off by speed times clock error"
     )
+
+
+def _utc(seen: AutopilotFacts, speed_m_s: float) -> list[Finding]:
+    """Return the line on the autopilot's time of day, none while that is unknown.
+
+    Neither autopilot keeps its clock to GNSS. PX4 sets it only where it is 5 s off or more, late by as long as the fix
+    was under way; ArduPilot leaves it to its quartz, before the arming but for steps forwards. What compares with it
+    is the computer's date alone.
+    Source: PX4's GPS::callback, GPSCallbackType::setClock; ArduPilot's AP_RTC::set_utc_usec.
+    """
+    if seen.utc_ahead_s is None:
+        return []
+    off_s = abs(seen.utc_ahead_s)
+    text = f"{off_s:.3g} s {'ahead of' if seen.utc_ahead_s > 0.0 else 'behind'} this computer's"
+    advice = (
+        "set this computer's date by NTP or GNSS and check again; if it is the autopilot's that is off, power it up "
+        "anew under an open sky, PX4 after `system_time set 1` in its shell"
+    )
+    reason = f"at {speed_m_s:g} m/s the vehicle is placed {speed_m_s * off_s:.3g} m off where no detector shows it"
+    return [make_finding("time of day", text, pass_or(off_s <= _UTC_OFF_MAX_S, Level.WARN), advice, reason)]
 
 
 def _rate(seen: AutopilotFacts, name: str) -> Finding:

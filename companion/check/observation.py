@@ -21,6 +21,7 @@ class AutopilotFacts:
         geoid_height_m: of mean sea level above the ellipsoid, by its receiver.
         round_trips: TIMESYNC answers.
         utc_known: it tells the time of day.
+        utc_ahead_s: of the date of the computer that checks.
         clock_std_s: of its boot clock on the companion's.
         rates_hz: of the messages that the companion asks for, by name.
         latency_s: median from a position's stamp to its arrival.
@@ -39,6 +40,7 @@ class AutopilotFacts:
     geoid_height_m: float | None = None
     round_trips: int = 0
     utc_known: bool = False
+    utc_ahead_s: float | None = None
     clock_std_s: float | None = None
     rates_hz: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
     latency_s: float | None = None

@@ -118,6 +118,7 @@ class Reader:
             has_position="LOCAL_POSITION_NED" in self._newest,
             round_trips=self.session.statistics.round_trips,
             utc_known=clock.is_utc_known,
+            utc_ahead_s=self._utc_ahead_s(),
             clock_std_s=None if std_ns is None else std_ns * 1e-9,
             rates_hz={name: self._counts[name] / self.listened_s for name in MOTION} if self.listened_s else {},
             latency_s=statistics.median(self._latencies_s) if self._latencies_s else None,
@@ -125,6 +126,11 @@ class Reader:
             battery_share=self._battery_share(),
             parameters=dict(self._parameters),
         )
+
+    def _utc_ahead_s(self) -> float | None:
+        clock = self.session.clock
+        is_known = clock.is_utc_known and clock.local_to_boot is not None
+        return (clock.local_to_utc_ns(self._t_ns) - self._t_ns) * 1e-9 if is_known else None
 
     def _take(self, events: list[Event]) -> None:
         for event in events:

@@ -29,6 +29,7 @@ GOOD = AutopilotFacts(
     geoid_height_m=-0.4,
     round_trips=20,
     utc_known=True,
+    utc_ahead_s=-0.004,
     clock_std_s=0.001,
     rates_hz=dict.fromkeys(MOTION, 50.0),
     latency_s=0.01,
@@ -65,6 +66,8 @@ def test_everything_in_order_is_all_pass() -> None:
         ({"round_trips": 0}, "clock", Level.FAIL),
         ({"utc_known": False}, "clock", Level.FAIL),
         ({"clock_std_s": 0.1}, "clock", Level.WARN),
+        ({"utc_ahead_s": -0.11}, "time of day", Level.WARN),
+        ({"utc_ahead_s": 4.2}, "time of day", Level.WARN),
         ({"rates_hz": {}}, MOTION[0], Level.FAIL),
         ({"rates_hz": dict.fromkeys(MOTION, 20.0)}, MOTION[1], Level.WARN),
         ({"latency_s": 0.3}, "latency", Level.WARN),
@@ -78,6 +81,13 @@ def test_autopilot_amiss_is_told(changed: dict[str, Any], line: str, level: Leve
     by_name = {one.name: one for one in assess(replace(GOOD, **changed), VEHICLE, 10.0, CONFIG)}
     assert by_name[line].level is level
     assert by_name[line].advice
+
+
+def test_time_of_day_is_told_with_what_it_does_to_the_vehicles_place() -> None:
+    found = {one.name: one for one in assess(replace(GOOD, utc_ahead_s=-0.11), VEHICLE, 10.0, CONFIG)}["time of day"]
+    assert found.found == "0.11 s behind this computer's"
+    assert found.reason.startswith("at 10 m/s the vehicle is placed 1.1 m off")
+    assert "time of day" not in {one.name for one in assess(replace(GOOD, utc_ahead_s=None), VEHICLE, 10.0, CONFIG)}
 
 
 def test_position_that_comes_before_it_was_taken_is_told_unless_the_clocks_are_no_better_known() -> None:

@@ -7,7 +7,7 @@ from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import Message, mavlink
 from link.mavlink.session import MavlinkSession
 from tests.companion.peer import FakePx4
-from tests.link.mavlink.fake_autopilot import MS, START_NS, S
+from tests.link.mavlink.fake_autopilot import MS, START_NS, UTC_AHEAD_NS, S
 
 DOWN = mavlink.MAV_SENSOR_ROTATION_PITCH_270
 FORWARD, RIGHT = mavlink.MAV_SENSOR_ROTATION_NONE, mavlink.MAV_SENSOR_ROTATION_YAW_90
@@ -61,25 +61,35 @@ def test_geoid_is_read_off_the_receiver_as_in_flight(fix: int, ellipsoid_mm: int
     assert heard(receiver).facts().geoid_height_m == (None if height_m is None else pytest.approx(height_m))
 
 
+def ran(reader: Reader, autopilot: FakePx4, t_ns: int, duration_s: float) -> int:
+    """Let both talk to each other, and return the time after it."""
+    for _ in range(round(duration_s * S / (5 * MS))):
+        t_ns += 5 * MS
+        autopilot.tick(t_ns)
+        for data in autopilot.take_output():
+            reader.receive(data, t_ns)
+        reader.poll(t_ns)
+        for frame in reader.session.take_output():
+            autopilot.receive(frame, t_ns)
+    return t_ns
+
+
 def test_what_is_asked_for_once_waits_for_an_answer_before_it_is_asked_for_again() -> None:
     ask = mavlink.MAV_CMD_REQUEST_MESSAGE
-    reader, autopilot, t_ns = Reader(MavlinkSession(1)), FakePx4(results={ask: ()}), START_NS
-
-    def run(duration_s: float) -> int:
-        """Return how often the autopilot was asked."""
-        nonlocal t_ns
-        before = len(autopilot.commands(ask))
-        for _ in range(round(duration_s * S / (5 * MS))):
-            t_ns += 5 * MS
-            autopilot.tick(t_ns)
-            for data in autopilot.take_output():
-                reader.receive(data, t_ns)
-            reader.poll(t_ns)
-            for frame in reader.session.take_output():
-                autopilot.receive(frame, t_ns)
-        return len(autopilot.commands(ask)) - before
-
-    assert run(20.0) > 20
+    reader, autopilot = Reader(MavlinkSession(1)), FakePx4(results={ask: ()})
+    t_ns = ran(reader, autopilot, START_NS, 20.0)
+    asked = len(autopilot.commands(ask))
+    assert asked > 20
     autopilot.results = {}
-    assert run(0.9) <= 4
+    ran(reader, autopilot, t_ns, 0.9)
+    assert len(autopilot.commands(ask)) - asked <= 4
     assert reader.facts().has_origin
+
+
+def test_autopilots_date_is_compared_with_the_computers() -> None:
+    reader, autopilot = Reader(MavlinkSession(1)), FakePx4(utc_set_by_ns=-UTC_AHEAD_NS + 4_200 * MS)
+    ran(reader, autopilot, START_NS, 3.0)
+    assert reader.facts().utc_ahead_s == pytest.approx(4.2, abs=0.005)
+    reader, autopilot = Reader(MavlinkSession(1)), FakePx4(utc_known=False)
+    ran(reader, autopilot, START_NS, 3.0)
+    assert reader.facts().utc_ahead_s is None
