@@ -135,8 +135,8 @@ def _utc(seen: AutopilotFacts, speed_m_s: float) -> list[Finding]:
     off_s = abs(seen.utc_ahead_s)
     text = f"{off_s:.3g} s {'ahead of' if seen.utc_ahead_s > 0.0 else 'behind'} this computer's"
     advice = (
-        "set this computer's date by NTP or GNSS and check again; if it is the autopilot's that is off, power it up "
-        "anew under an open sky, PX4 after `system_time set 1` in its shell"
+        "set this computer's date by NTP or GNSS and check again; if it is the autopilot's that is off, set "
+        'autopilot.utc = "computer", or power it up anew, PX4 after `system_time set 1` in its shell'
     )
     reason = f"at {speed_m_s:g} m/s the vehicle is placed {speed_m_s * off_s:.3g} m off where no detector shows it"
     return [make_finding("time of day", text, pass_or(off_s <= _UTC_OFF_MAX_S, Level.WARN), advice, reason)]

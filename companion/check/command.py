@@ -21,6 +21,7 @@ from link.zenoh.command_line import NameArguments, ZenohArguments
 
 if TYPE_CHECKING:
     from companion.check.session import CheckSession
+    from companion.config.autopilot import UtcOf
     from companion.config.companion import CompanionConfig
     from link.mavlink.signing import Signing
     from link.transports.transport import Transport
@@ -86,7 +87,7 @@ def check(
     options, keys = endpoints.options(), names.keys()
     node = (f"/{keys.drone}", "companion_check")
     with open_transport(mavlink.mavlink) as transport, open_layout(options, ros2.options(), keys, node) as zenoh:
-        session = _find(transport, mavlink, signing, timeout)
+        session = _find(transport, mavlink, signing, timeout, settings.autopilot.utc)
         if back is not None:
             _write(session, back)
             return 0
@@ -129,12 +130,12 @@ class _Question:
 
 
 def _find(
-    transport: "Transport", mavlink: MavlinkArguments, signing: "Signing | None", timeout_s: float
+    transport: "Transport", mavlink: MavlinkArguments, signing: "Signing | None", timeout_s: float, utc: "UtcOf"
 ) -> "CheckSession":
     """Return the session with the autopilot that a link leads to."""
     from companion.check.session import open_check
 
-    session = open_check(transport, mavlink.mavlink, system_id=mavlink.system_id, signing=signing)
+    session = open_check(transport, mavlink.mavlink, system_id=mavlink.system_id, signing=signing, utc=utc)
     limit = f", for {timeout_s:g} s at most" if timeout_s else ""
     typer.echo(f"looking for an autopilot on {mavlink.mavlink}{limit}", err=True)
     session.find(timeout_s)

@@ -8,6 +8,7 @@ from companion.check.detector import DetectorReader
 from companion.check.observation import DetectorFacts, VehicleFacts
 from companion.check.reading import Reader
 from companion.check.vehicle_reading import VehicleReader
+from companion.config.autopilot import UtcOf
 from companion.config.integrity import IntegrityConfig
 from link.mavlink.parameters import parameter_set_message
 from link.mavlink.pinned_peer import PinnedPeer
@@ -37,7 +38,9 @@ class Inboxes:
     sightings: Inbox
 
 
-def open_check(transport: Transport, device: str, *, system_id: int, signing: Signing | None = None) -> "CheckSession":
+def open_check(
+    transport: Transport, device: str, *, system_id: int, signing: Signing | None = None, utc: UtcOf = UtcOf.AUTOPILOT
+) -> "CheckSession":
     """Return a conversation that has not begun.
 
     Args:
@@ -45,8 +48,10 @@ def open_check(transport: Transport, device: str, *, system_id: int, signing: Si
         device: its name, for messages.
         system_id: MAVLink's, of the drone.
         signing: by a key shared with the autopilot; None sends unsigned and takes everything.
+        utc: whose time of day is taken for it.
     """
     session = MavlinkSession(system_id, target_system_id=system_id, signing=signing)
+    session.clock_sync.takes_own_utc = utc is UtcOf.COMPUTER
     return CheckSession(Reader(session), transport, device)
 
 

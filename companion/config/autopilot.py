@@ -31,6 +31,13 @@ class PadOnMap(Enum):
     ADSB = "adsb"  # likewise, and as a vehicle among the traffic, which all ground stations draw
 
 
+class UtcOf(Enum):
+    """Whose time of day is taken for UTC."""
+
+    AUTOPILOT = "autopilot"
+    COMPUTER = "computer"  # its date when the companion starts, carried on from there
+
+
 Pulse = Annotated[int, Field(ge=800, le=2200)]
 
 
@@ -56,6 +63,7 @@ class AutopilotConfig(StrictModel):
     guide: Guide = Guide.SETPOINTS  # the companion flies by setpoints, or tells the autopilot's own precision landing
     # Of mean sea level above the ellipsoid, where the autopilot's receiver does not tell it; none: then no start.
     geoid_height_m: Annotated[float, Field(ge=-120.0, le=120.0)] | None = None
+    utc: UtcOf = UtcOf.AUTOPILOT  # the computer's where NTP or GNSS keeps it, before the companion starts
     pilot_switch: PilotSwitchConfig = PilotSwitchConfig()
     stops_unused_streams: bool = True  # on the companion's own link; false where others listen on it, too
 

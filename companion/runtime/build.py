@@ -4,6 +4,7 @@ from typing import assert_never, cast
 
 import numpy as np
 
+from companion.config.autopilot import UtcOf
 from companion.config.companion import CompanionConfig
 from companion.config.estimation import EstimatorKind
 from companion.config.planning import GuidanceConfig, GuidanceKind, SolverKind
@@ -119,6 +120,7 @@ def build_node(
         records_input=records_input,
         first_number=first_number,
     )
+    session.clock_sync.takes_own_utc = config.autopilot.utc is UtcOf.COMPUTER
     if recorder is not None:
         return RecordingNode(
             system, keys, session, recorder, dry_run=dry_run, publishes=publishes, is_component=is_component

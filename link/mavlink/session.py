@@ -58,7 +58,7 @@ class MavlinkSession:
         )
         self._peer = Peer(Address(system_id, component_id), target_system_id)
         self._restarts = RestartWatch()
-        self._clock_sync = ClockSync()
+        self.clock_sync = ClockSync()
         self._commands = CommandSender(self._send_command)
         self._streams = StreamRequests(self._command_stream)
         self._parameters = ParameterReader(self._send_parameter_request)
@@ -69,7 +69,7 @@ class MavlinkSession:
     @property
     def clock(self) -> ClockMap:
         """What is known now of local, boot and UTC time."""
-        return self._clock_sync.clock
+        return self.clock_sync.clock
 
     @property
     def link_up(self) -> bool:
@@ -88,7 +88,7 @@ class MavlinkSession:
 
     def is_id_shared(self, t_ns: int) -> bool:
         """Whether two autopilots answer as the target, at local time `t_ns`."""
-        return self._clock_sync.shared_id.is_shared(t_ns)
+        return self.clock_sync.shared_id.is_shared(t_ns)
 
     @property
     def autopilot(self) -> int | None:
@@ -108,7 +108,7 @@ class MavlinkSession:
             filtered_messages=self._filtered,
             commands_retried=self._commands.retried,
             commands_timed_out=self._commands.timed_out,
-            round_trips=self._clock_sync.round_trips,
+            round_trips=self.clock_sync.round_trips,
         )
 
     def receive(self, data: bytes, t_ns: int, *, is_datagram: bool = False) -> list[Event]:
@@ -130,7 +130,7 @@ class MavlinkSession:
         for _, message in self._codec.flush(t_ns):
             events += self._take(message, t_ns)
         self._output += self.heartbeat.poll(t_ns, self._codec.encode)
-        if self._peer.is_up and (question := self._clock_sync.poll(t_ns)) is not None:
+        if self._peer.is_up and (question := self.clock_sync.poll(t_ns)) is not None:
             self.send(question)
         events += self._without_streams(self._commands.poll(t_ns))
         self._streams.poll(t_ns)
@@ -199,7 +199,7 @@ class MavlinkSession:
 
     def _take(self, message: Message, t_ns: int) -> list[Event]:
         if is_accepted := self._peer.accepts(message):
-            self._clock_sync.shared_id.hear(message, t_ns)
+            self.clock_sync.shared_id.hear(message, t_ns)
         boot_ns = boot_time_ns(message, self.clock.local_to_boot_ns(t_ns))
         if not is_accepted or (boot_ns and self._restarts.doubts(boot_ns, t_ns, self.clock)):
             self._filtered += 1
@@ -215,7 +215,7 @@ class MavlinkSession:
     def _handle(self, message: Message, t_ns: int) -> list[Event]:
         message_id = message.get_msgId()
         self._streams.seen(message_id, t_ns)
-        if (answer := self._clock_sync.hear(message, t_ns)) is not None:
+        if (answer := self.clock_sync.hear(message, t_ns)) is not None:
             self.send(answer)
         elif message_id == mavlink.MAVLINK_MSG_ID_COMMAND_ACK:
             event = self._commands.acknowledged(message, t_ns)
@@ -226,7 +226,7 @@ class MavlinkSession:
         return []
 
     def _start_over(self, restart: AutopilotRestarted) -> list[Event]:
-        self._clock_sync.start_over()
+        self.clock_sync.start_over()
         events = self._without_streams(self._commands.drop_all(restart.t_ns))
         self._streams.start_over(restart.t_ns)
         self._parameters.start_over(restart.t_ns)

@@ -55,9 +55,14 @@ def _is_boot_time(tc1_ns: int) -> bool:
 
 
 class ClockSync:
-    """The exchange of times with the autopilot."""
+    """The exchange of times with the autopilot.
+
+    Attributes:
+        takes_own_utc: UTC is what the local clock shows, not what SYSTEM_TIME tells.
+    """
 
     def __init__(self) -> None:
+        self.takes_own_utc = False
         self.clock = ClockMap()
         self.round_trips = 0
         self._timer = Timer(_FAST_PERIOD_NS)
@@ -100,7 +105,9 @@ class ClockSync:
     def system_time(self, message: Message) -> None:
         """Takes a SYSTEM_TIME."""
         boot_ns = message.time_boot_ms * 1_000_000
-        self.clock = with_system_time(self.clock, boot_ns, message.time_unix_usec * 1000, _CLOCK)
+        unix_ns = self.clock.boot_to_local_ns(boot_ns) if self.takes_own_utc else message.time_unix_usec * 1000
+        if unix_ns is not None:
+            self.clock = with_system_time(self.clock, boot_ns, unix_ns, _CLOCK)
 
     def start_over(self) -> None:
         """Forgets everything, as after a restart; answers to earlier questions count no more."""
