@@ -17,7 +17,7 @@ import numpy as np
 
 from link.compiled import kernel
 from sim_autopilot.core.data import Array, Surface
-from sim_autopilot.physics.ground import ground_height
+from sim_autopilot.physics.ground import ground_height_kernel
 from sim_autopilot.physics.parameters import Record
 from sim_autopilot.physics.rotation import fill_matrix, fill_turned
 
@@ -169,7 +169,7 @@ def touched_surface(y: Array, rotation: Array, i: int, frame: Array, local: Arra
             add_motion(y, rotation, frame, local)
             return DECK if axis == 2 else SIDE
     localise(y, rotation, CONTACT_POINTS_FLU_M[i], GROUND_FRAME, local)
-    local[2] -= ground_height(y[0], y[1], frame[0], frame[1], frame[2], frame[22])
+    local[2] -= ground_height_kernel(y[0], y[1], frame[0], frame[1], frame[2], frame[22])
     if local[2] >= 0.0:
         return NO_SURFACE
     add_motion(y, rotation, GROUND_FRAME, local)

@@ -17,7 +17,6 @@ PASSES_M = 25.0
 passed by, and one that it leaves behind is higher than the road rises over so short a way."""
 
 
-@kernel
 def ground_height(
     east_m: float, north_m: float, vehicle_east_m: float, vehicle_north_m: float, road_m: float, lowest_m: float
 ) -> float:
@@ -37,3 +36,7 @@ def ground_height(
         return 0.0
     is_near = math.hypot(east_m - vehicle_east_m, north_m - vehicle_north_m) < PASSES_M
     return min((road_m if is_near else min(road_m, lowest_m)) + CUTTING_M, 0.0)
+
+
+ground_height_kernel = kernel(ground_height)
+"""The same for compiled functions; who calls it from Python, as the range finder does, waits for no compiler."""

@@ -11,7 +11,7 @@ from link.compiled import kernel
 from sim_autopilot.core.data import Array
 from sim_autopilot.physics.airframe import GRAVITY_M_S2
 from sim_autopilot.physics.contact import GROUND_FRAME, localise, over
-from sim_autopilot.physics.ground import ground_height
+from sim_autopilot.physics.ground import ground_height_kernel
 from sim_autopilot.physics.parameters import Record
 from sim_autopilot.physics.rotors import ROTOR_X, ROTOR_Y
 
@@ -52,5 +52,5 @@ def fill_gains(
         height = local[2] - frame[20]
         if not over(local, frame) or height < 0.0:
             localise(y, rotation, point, GROUND_FRAME, local)
-            height = local[2] - ground_height(y[0], y[1], frame[0], frame[1], frame[2], frame[22])
+            height = local[2] - ground_height_kernel(y[0], y[1], frame[0], frame[1], frame[2], frame[22])
         out[i] = thrust_gain(height, body["rotor_radius_m"], airspeed, induced)

@@ -11,7 +11,7 @@ from link.compiled import kernel
 from sim_autopilot.core.data import Array
 from sim_autopilot.physics.contact import FRAME_SIZE, add_contact, fill_frame, update_anchors
 from sim_autopilot.physics.dynamics import STATE_SIZE, fill_derivative, fill_flight_forces, normalise
-from sim_autopilot.physics.ground import ground_height
+from sim_autopilot.physics.ground import ground_height_kernel
 from sim_autopilot.physics.ground_effect import fill_gains
 from sim_autopilot.physics.parameters import Record
 from sim_autopilot.physics.rotation import fill_matrix
@@ -59,7 +59,7 @@ def nearness(y: Array, deck: Array, elapsed_s: float) -> int:
     """Return whether a surface may touch the drone, only lift it, or is too far for both."""
     ahead = elapsed_s + deck[17]
     vehicle = deck[0] + deck[7] * ahead, deck[1] + deck[8] * ahead, deck[2] + deck[9] * ahead
-    ground_m = ground_height(y[0], y[1], vehicle[0], vehicle[1], vehicle[2], deck[18])
+    ground_m = ground_height_kernel(y[0], y[1], vehicle[0], vehicle[1], vehicle[2], deck[18])
     height = min(y[2] - ground_m, height_over_roof(y, deck, elapsed_s))
     if height < TOUCH_M:
         return IN_TOUCH

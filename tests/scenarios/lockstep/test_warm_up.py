@@ -77,7 +77,15 @@ def test_two_processes_that_share_the_work_leave_nothing_to_compile() -> None:
 
 _PREPARED = """
 import sys
+from numba.core import event
 from link.compiled import _kept_kernels
+
+class Compiler(event.Listener):
+    def on_start(self, about):
+        print("compiles", about.data["dispatcher"].py_func.__qualname__)
+
+    def on_end(self, about):
+        pass
 
 def prepared():
     return {(kernel.py_func.__module__, kernel.py_func.__name__, str(one)) for kernel, _ in _kept_kernels
@@ -96,6 +104,7 @@ from scenarios.lockstep.lockstep import Lockstep
 flight = Lockstep(draw(load_cell(sys.argv[1]), 3).scenario, 3)
 flight.step()
 before = prepared()
+event.register("numba:compile", Compiler())
 flight.run()
 tell_new(before)
 """
@@ -110,6 +119,7 @@ from companion.vehicle.factory import make_estimator
 
 estimator, memory = make_estimator(EstimatorConfig()), None
 before = prepared()
+event.register("numba:compile", Compiler())
 for i in range(100):
     told = {Quantity.POSITION: [0.0] * 3, Quantity.VELOCITY: [0.0] * 3, Quantity.HEADING: [0.05 * max(i - 50, 0)]}
     told[Quantity.YAW_RATE] = [0.5 if i > 50 else 0.0]

@@ -10,7 +10,7 @@ from scenarios.scoring.touch import Box, touches
 from scenarios.scoring.truth_log import truth_log
 from sim_autopilot.core.data import Deck, Surface
 from sim_autopilot.physics.contact import GEAR_HEIGHT_M
-from sim_autopilot.physics.ground import CUTTING_M, PASSES_M, START_M, ground_height
+from sim_autopilot.physics.ground import CUTTING_M, PASSES_M, START_M, ground_height, ground_height_kernel
 from sim_autopilot.plant.config import PlantConfig
 from tests.scenarios.scoring.synthetic import STILL, TIMES_S, body
 from tests.sim_autopilot.flights import at_rest, driving, flown, hovering
@@ -56,6 +56,13 @@ def test_valley_that_the_vehicle_has_left_stays_as_low(low_m: float, rises_m: fl
 def test_ground_of_the_start_stays_until_the_road_leads_through_there() -> None:
     assert ground_height(0.5 * START_M, 0.0, 2.0 * PASSES_M, 0.0, -LOW_M, -LOW_M) == 0.0
     assert ground_height(0.5 * START_M, 0.0, 0.5 * PASSES_M, 0.0, -LOW_M, -LOW_M) == CUTTING_M - LOW_M
+
+
+@given(st.tuples(*4 * [st.floats(-50.0, 50.0)]), st.floats(-5.0, 5.0), st.floats(-5.0, 5.0))
+def test_compiled_functions_have_the_same_ground(
+    places: tuple[float, float, float, float], road_m: float, low_m: float
+) -> None:
+    assert ground_height_kernel(*places, road_m, low_m) == ground_height(*places, road_m, low_m)
 
 
 def test_drone_stands_on_the_ground_beside_a_road_that_has_led_down() -> None:
