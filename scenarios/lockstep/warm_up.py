@@ -16,6 +16,7 @@ from functools import cache
 from pathlib import Path
 
 from link.errors import UserError
+from link.program.clock import collect_rarely, spare_present_objects
 from link.program.exit_codes import EXIT_OK, EXIT_USER_ERROR
 from link.program.interrupts import EndingAtOnce, take_interrupts
 
@@ -34,10 +35,8 @@ def warm_process() -> None:
     Raises:
         UserError: there is no place to keep what is compiled.
     """
-    # Loaded here, so that what is wrong with the place for machine code is told as one line.
-    from link.program.clock import collect_rarely, spare_present_objects  # noqa: PLC0415 (see above)
-
     collect_rarely()
+    # Loaded here, so that what is wrong with the place for machine code is told as one line.
     from scenarios.catalogue.catalogue import load_scenario  # noqa: PLC0415 (see above)
     from scenarios.lockstep.lockstep import Lockstep  # noqa: PLC0415 (see above)
 
@@ -164,6 +163,7 @@ def _main_beside() -> int:
 
 if __name__ == "__main__":
     is_beside = sys.argv[1:] == [_BESIDE]
+    collect_rarely()
     take_interrupts("" if is_beside else _MODULE)  # one of the two tells it
     with EndingAtOnce():
         sys.exit(_main_beside() if is_beside else main())
