@@ -22,41 +22,49 @@ ALONE = $(shell grep -rlF pytest.mark.alone tests --include='test_*.py' | sort)
 
 .PHONY: setup demo test check fast simulated docs lint style types lock fuzz clean
 
-setup: .venv/.kernels
+setup: .venv/.complete .venv/.kernels
 
 # On a drone all is compiled to byte code now, for programs that may write none there; else what is loaded is, when it is.
-.venv/.complete: $(LOCK) pyproject.toml
+INSTALL := $(BIN)/python -m pip install --quiet --no-deps
+LOCKED := $(INSTALL) --require-hashes $(if $(EXTRA),,--no-compile)
+
+.venv/.drone: requirements-companion.lock $(LOCK) pyproject.toml
 	@echo 'installing into .venv what $(LOCK) names: some minutes, without further output'
 	rm -rf .venv
 	$(PYTHON) -m venv .venv
-	$(BIN)/python -m pip install --quiet --no-deps --require-hashes $(if $(EXTRA),,--no-compile) -r $(LOCK)
-	$(BIN)/python -m pip install --quiet --no-deps --no-build-isolation --editable .
+	$(LOCKED) -r requirements-companion.lock
 	touch $@
 
-.venv/.kernels: .venv/.complete
+# The kernels need no more than a drone does: they compile while the rest is installed.
+.venv/.complete: .venv/.drone
+	$(if $(EXTRA),,$(LOCKED) -r $(LOCK))
+	$(INSTALL) --no-build-isolation --editable .
+	touch $@
+
+.venv/.kernels: .venv/.drone
 	$(BIN)/python -m scenarios.lockstep.warm_up
 	touch $@
 
-demo: .venv/.kernels
+demo: setup
 	$(BIN)/scenarios run $(SCENARIO)$(if $(CAMERA),+camera=$(CAMERA)) --speed $(SPEED) --seed $(SEED)
 
 check: fast lint
 
-fast: .venv/.kernels
+fast: setup
 	$(BIN)/pytest -q -n 2 --dist loadscope --no-loadscope-reorder --hypothesis-profile=quick -m "not slow and not wire"
 
 # What keeps time with the clock runs after the rest: what mostly waits two at a time, what measures time by itself.
-test: .venv/.kernels style docs types simulated
+test: setup style docs types simulated
 	$(BIN)/pytest -q -n 2 --dist loadscope --no-loadscope-reorder -m "wire and not alone" $(LONG) $(filter-out $(LONG),$(WIRE))
 	$(BIN)/pytest -q -m alone $(ALONE)
 
 # A module's tests share what they fly; in the order of the files the many short ones come last. Begun while the types,
 # which take one core, are checked.
-simulated: .venv/.kernels
+simulated: setup
 	$(BIN)/pytest -q -n 2 --dist loadscope --no-loadscope-reorder -m "not wire"
 
 # Drawn anew each time; FRAMES=10000000 goes on for longer. What it finds becomes an example in tests/security.
-fuzz: .venv/.kernels
+fuzz: setup
 	$(BIN)/scenarios fuzz --frames $(FRAMES) --seed $$(od -An -N4 -tu4 /dev/urandom | tr -d ' ')
 	$(BIN)/pytest -q -n 2 --hypothesis-profile=anew -m "hypothesis and not wire"
 
