@@ -61,6 +61,7 @@ class VehicleFacts:
         std_m: the largest standard deviation, of any axis, that a fix states.
         has_velocity: it sends its velocity as well.
         tells_acceleration: along its own axes; an inertial unit's.
+        acceleration_refused_why: what is wrong with it, None where nothing is or there is none.
         describes_pad: it answered for its pad.
         pad_refused_why: what was wrong with an answer, None where nothing was.
         antenna_behind_pad_m: by which the antenna is behind the pad's middle, as the vehicle describes it; 0 before.
@@ -78,6 +79,7 @@ class VehicleFacts:
     std_m: float | None = None
     has_velocity: bool = False
     tells_acceleration: bool = False
+    acceleration_refused_why: str | None = None
     describes_pad: bool = False
     pad_refused_why: str | None = None
     antenna_behind_pad_m: float = 0.0

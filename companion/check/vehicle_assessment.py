@@ -47,6 +47,12 @@ def _brakes(seen: VehicleFacts) -> list[Finding]:
     """Return the line on how soon a brake shows; none of a vessel, which has none."""
     if seen.is_afloat:
         return []
+    if seen.acceleration_refused_why is not None:
+        text, advice = (
+            f"refused: {seen.acceleration_refused_why}",
+            "tell m/s^2 along the vehicle's axes (docs/vehicle.md)",
+        )
+        return [make_finding("vehicle brakes", text, Level.WARN, advice, "flown as if the vehicle told none")]
     text = "tells its acceleration" if seen.tells_acceleration else "tells no acceleration"
     advice = "let an inertial unit tell it (docs/vehicle.md)"
     # docs/notebook.md, "A brake in the last half second"

@@ -7,6 +7,7 @@ import statistics
 from companion.check.observation import VehicleFacts
 from companion.config.integrity import IntegrityConfig
 from companion.core.data import Quantity
+from companion.vehicle.gravity_watch import GravityWatch
 from companion.vehicle.inputs import imu_measurements
 from link.frames.rotations import yaw_of
 from link.messages import Fix, FixVelocity, VehicleImu
@@ -35,6 +36,7 @@ class VehicleReader:
         self._std_m: float | None = None
         self._has_velocity = False
         self._tells_acceleration = False
+        self._gravity = GravityWatch()
         self._heading: tuple[int, float] | None = None
         self._offs: list[complex] = []
         self._speeds_m_s: list[float] = []
@@ -77,7 +79,8 @@ class VehicleReader:
             message = cdr.decode(VehicleImu, payload)
         except PayloadError:
             return
-        self._tells_acceleration |= any(one.quantity is Quantity.ACCELERATION for one in imu_measurements(message))
+        measurements = imu_measurements(message, self._gravity)
+        self._tells_acceleration |= any(one.quantity is Quantity.ACCELERATION for one in measurements)
         if message.orientation_wxyz is not None:
             self._heading = (message.t_ns, yaw_of(message.orientation_wxyz))
 
@@ -97,6 +100,7 @@ class VehicleReader:
             std_m=self._std_m,
             has_velocity=self._has_velocity,
             tells_acceleration=self._tells_acceleration,
+            acceleration_refused_why=self._gravity.doubt,
             describes_pad=pad.is_answered,
             pad_refused_why=pad.refused_why,
             antenna_behind_pad_m=0.0 if pad.pad is None else pad.pad.antenna_to_pad_m[0],

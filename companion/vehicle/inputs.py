@@ -6,6 +6,7 @@ import numpy as np
 
 from companion.autopilots.state import AutopilotState
 from companion.core.data import Array, Measurement, OwnState, Quantity
+from companion.vehicle.gravity_watch import GravityWatch
 from companion.vehicle.range_watch import ATTITUDE_AGE_MAX_S
 from link.frames.geodesy import LocalFrame, is_metric, local_from_geodetic, scale_of
 from link.frames.rotations import roll_pitch_yaw_of, rotate, yaw_of
@@ -50,7 +51,9 @@ _VALUE_MAX = {
 }
 
 
-def measurements_of(key: str, payload: bytes, keys: Keys, state: AutopilotState) -> list[Measurement]:
+def measurements_of(
+    key: str, payload: bytes, keys: Keys, state: AutopilotState, gravity: GravityWatch
+) -> list[Measurement]:
     """Return what a Zenoh sample of the vehicle measures, nothing of one that is no measurement or too early.
 
     Args:
@@ -58,15 +61,18 @@ def measurements_of(key: str, payload: bytes, keys: Keys, state: AutopilotState)
         payload: CDR.
         keys: of the Zenoh contract.
         state: of the autopilot, for its local frame W and the drone's place when it saw the pad.
+        gravity: takes what the vehicle's accelerometer tells, which counts while that is believed.
 
     Raises:
         PayloadError: it cannot be decoded, or is absurd.
     """
     with np.errstate(over="ignore", invalid="ignore"):  # what gets too large for a number is refused as absurd
-        return [plausible(measurement) for measurement in _decode(key, payload, keys, state)]
+        return [plausible(measurement) for measurement in _decode(key, payload, keys, state, gravity)]
 
 
-def _decode(key: str, payload: bytes, keys: Keys, state: AutopilotState) -> tuple[Measurement, ...]:
+def _decode(
+    key: str, payload: bytes, keys: Keys, state: AutopilotState, gravity: GravityWatch
+) -> tuple[Measurement, ...]:
     frame = state.view.frame
     if key == keys.fix:
         fix = cdr.decode(Fix, payload)
@@ -75,7 +81,7 @@ def _decode(key: str, payload: bytes, keys: Keys, state: AutopilotState) -> tupl
         velocity = cdr.decode(FixVelocity, payload)
         return () if frame is None else velocity_measurements(velocity, frame)
     if key == keys.imu:
-        return imu_measurements(cdr.decode(VehicleImu, payload))
+        return imu_measurements(cdr.decode(VehicleImu, payload), gravity)
     if key == keys.pad_pose:
         sighting = cdr.decode(PadSighting, payload)
         own_then = state.own_at(sighting.t_ns)
@@ -151,8 +157,13 @@ def velocity_measurements(message: FixVelocity, frame: LocalFrame) -> tuple[Meas
     return (velocity, _yaw_rate(message.t_ns, message.yaw_rate_rad_s, message.yaw_rate_variance_rad2_s2))
 
 
-def imu_measurements(message: VehicleImu) -> tuple[Measurement, ...]:
-    """Return heading, yaw rate, acceleration along the vehicle and tilt, as far as the message has them."""
+def imu_measurements(message: VehicleImu, gravity: GravityWatch) -> tuple[Measurement, ...]:
+    """Return heading, yaw rate, acceleration along the vehicle and tilt, as far as the message has them.
+
+    Args:
+        message: of the vehicle's unit.
+        gravity: takes the acceleration, which is measured while that is believed.
+    """
     found: list[Measurement] = []
     if message.orientation_wxyz is not None:
         covariance = message.orientation_covariance_rad2
@@ -166,8 +177,10 @@ def imu_measurements(message: VehicleImu) -> tuple[Measurement, ...]:
     if force_m_s2 is not None and any(force_m_s2):  # exactly none at all is what drivers without it leave behind
         force_covariance = message.specific_force_covariance_m2_s4
         force_variance = _ACCELERATION_STD_M_S2**2 if force_covariance is None else force_covariance[0]
+        gravity.take(message.t_ns, force_m_s2, message.orientation_wxyz)
         forward_m_s2 = _forward_force_m_s2(force_m_s2, message.orientation_wxyz)
-        found.append(_scalar(message.t_ns, Quantity.ACCELERATION, forward_m_s2, force_variance))
+        if gravity.is_believed:
+            found.append(_scalar(message.t_ns, Quantity.ACCELERATION, forward_m_s2, force_variance))
     tilt = _tilt(message)
     return tuple(found) if tilt is None else (*found, tilt)
 

@@ -43,6 +43,7 @@ def by_name(seen: VehicleFacts) -> dict[str, Finding]:
         ({"std_m": 5.0}, "vehicle accuracy", Level.FAIL),
         ({"std_m": None}, "vehicle accuracy", Level.WARN),
         ({"tells_acceleration": False}, "vehicle brakes", Level.WARN),
+        ({"tells_acceleration": False, "acceleration_refused_why": "units"}, "vehicle brakes", Level.WARN),
         ({"describes_pad": False}, "vehicle pad", Level.FAIL),
         ({"pad_width_m": 0.6}, "vehicle pad", Level.FAIL),
         ({"describes_pad": False, "pad_refused_why": "antenna_to_pad_m.0: 60"}, "vehicle pad", Level.FAIL),

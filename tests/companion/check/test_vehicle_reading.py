@@ -65,9 +65,24 @@ def test_course_begins_at_the_speed_that_the_configuration_says() -> None:
 
 @pytest.mark.parametrize(("force", "is_told"), [((0.1, 0.0, 9.8), True), ((0.0, 0.0, 0.0), False), (None, False)])
 def test_acceleration_is_told_by_a_unit_that_measures_one(force: Vector3 | None, *, is_told: bool) -> None:
+    facts = _told_forces(force).facts(NOT_ASKED)
+    assert facts.tells_acceleration is is_told
+    assert facts.acceleration_refused_why is None
+
+
+def test_acceleration_in_other_units_is_none_and_says_why() -> None:
+    facts = _told_forces((0.01, 0.0, 1.0)).facts(NOT_ASKED)
+    assert not facts.tells_acceleration
+    assert facts.acceleration_refused_why is not None
+
+
+def _told_forces(force: Vector3 | None) -> VehicleReader:
+    """Return what 1.2 s of a unit at 50 Hz have told."""
     reader = VehicleReader("decklander/vehicle/fix", CONFIG)
-    reader.imu(cdr.encode(VehicleImu(t_ns=START_NS, specific_force_flu_m_s2=force)))
-    assert reader.facts(NOT_ASKED).tells_acceleration is is_told
+    for index in range(60):
+        imu = VehicleImu(t_ns=START_NS + index * 20_000_000, specific_force_flu_m_s2=force)
+        reader.imu(cdr.encode(imu))
+    return reader
 
 
 def _without_a_fix() -> bytes:
