@@ -121,6 +121,7 @@ def _situation(memory: StepMemory, pad: PadPath | None, inputs: StepInputs, syst
             speed_std_m_s=vehicle.hindsight.speed_std_m_s,
             fix_std_m=vehicle.phases.vehicle_std_m,
             rejected_share=vehicle.contradictions.rejected_share,
+            rejected=vehicle.contradictions.rejected,
             are_sightings_mixed=vehicle.sightings.are_mixed,
             has_pad_stepped=vehicle.sightings.has_stepped,
             is_road_elsewhere=bool(vehicle.is_road_elsewhere),

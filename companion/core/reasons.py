@@ -59,7 +59,7 @@ class Reason(Enum):
     VEHICLE_LINK_LOST = "vehicle's link lost"
     VEHICLE_CLOCK_AHEAD = "vehicle's clock is ahead"
     STAMPS_STEPPED = "stamps of the fixes have stepped: the vehicle's clock, or the autopilot's, was set"
-    VEHICLE_CONTRADICTS_ITSELF = "vehicle data contradict themselves"
+    VEHICLE_CONTRADICTS_ITSELF = "vehicle data contradict themselves: {:.0%} of its {} were rejected: see {}"
     SEEN_ELSEWHERE = (
         "pad is seen where both receivers say that it is not: see the detector's board and mounting, both receivers, "
         "the vehicle's heading, or --receiver-frames apart where they have two base stations"
@@ -143,10 +143,7 @@ class Reason(Enum):
     AUTOPILOT_WARNS = (
         "the autopilot reports a failsafe (battery, radio, ground station): end its cause, see its own messages"
     )
-    MEASUREMENTS_REJECTED = (
-        "vehicle data contradict themselves: {:.0f} % of one quantity in the last 10 s were rejected: see the axes of "
-        "its velocity, its stamps, its receiver"
-    )
+    MEASUREMENTS_REJECTED = "vehicle data contradict themselves: {:.0%} of its {} in 10 s were rejected: see {}"
     BATTERY_LOW = "battery at {:.0f} %, limits.battery_min_share is {:.0f} %: charge it"
     PAD_TOO_SMALL = "pad is {:.2f} m wide, {:.2f} m are needed for feet {:.2f} m about the axis: use a larger pad"
     ROAD_ELSEWHERE = "the vehicle's road {}"

@@ -1,9 +1,4 @@
-"""Whether the vehicle's data contradict each other, or head where it does not go; pure.
-
-How many of one quantity the estimator has lately rejected tells the first: an inertial unit, which tells most and fits
-always, would hide fixes that do not. Sightings of the pad have a watch of their own.
-A velocity with its axes exchanged, or stamps that jump, make the estimator reject what it has just believed, again and
-again: its estimate swings between the two. Outages and brakes have a few rejected, one after the other.
+"""Whether the vehicle heads where it goes, and what of it nobody can know; pure.
 
 A heading from a magnetometer beside steel, or one with its axes mixed up, turns the lever arm from the antenna to the
 pad: by 20 degrees the benchmark's pad is half a metre off, by 180 degrees it is beside the vehicle. The course tells,
@@ -15,67 +10,17 @@ that is believed of a vehicle whose heading has agreed with its course before, a
 
 import math
 from enum import Enum
-from operator import add, gt
 
 from msgspec import Struct
 
 from companion.config.companion import CompanionConfig
 from companion.config.integrity import IntegrityConfig, ReceiverFrames
-from companion.core.data import STEP_MAX_S, Quantity
+from companion.core.data import STEP_MAX_S
 from companion.core.reasons import Cause, Reason
 from companion.situation.situation import Situation
-from companion.vehicle.estimator import BufferHealth
-from companion.vehicle.filter_step import OF_DRONE, RANK
 from companion.vehicle.pad import PadPath
 from companion.vehicle.pad_reach import cone_radius_at_pad_m
 from link.records import replace
-
-_EVERY_NS = 500_000_000
-_SAMPLES_KEPT = (
-    20  # samples, of 10 s in all: a step of the drone's own frame has measurements of half a second rejected
-)
-_MEASUREMENTS_MIN = 20  # measurements that something is said of
-
-_JUDGED = tuple(RANK[one] for one in Quantity if one is not Quantity.PAD and one not in OF_DRONE)
-
-Sample = tuple[int, tuple[int, ...], tuple[int, ...]]
-"""Monotonic ns, and how many of each of `QUANTITIES` had come and were rejected by then."""
-
-
-class Contradictions(Struct, frozen=True, kw_only=True):
-    """What became of the vehicle's measurements in the last seconds.
-
-    Attributes:
-        samples: oldest first.
-        rejected_share: of those of one quantity that came, the largest; of all together, where that is more, 0 to 1.
-    """
-
-    samples: tuple[Sample, ...] = ()
-    rejected_share: float = 0.0
-
-    def is_due(self, t_ns: int) -> bool:
-        """Return whether the next sample is to be taken at `t_ns`."""
-        return not self.samples or t_ns - self.samples[-1][0] >= _EVERY_NS
-
-
-def update_contradictions(before: Contradictions, health: BufferHealth, t_ns: int) -> Contradictions:
-    """Return the contradictions with what the estimator tells at `t_ns`; one that was restarted is counted again."""
-    arrived = tuple(map(add, health.accepted, health.rejected))
-    now = (t_ns, arrived, health.rejected)
-    if before.samples and any(map(gt, before.samples[-1][1], arrived)):
-        return Contradictions(samples=(now,))
-    samples = (*before.samples, now)[-_SAMPLES_KEPT - 1 :]
-    _, arrived_then, rejected_then = samples[0]
-    counts = [(arrived[k] - arrived_then[k], health.rejected[k] - rejected_then[k]) for k in _JUDGED]
-    together = (sum(came for came, _ in counts), sum(bad for _, bad in counts))
-    shares = (bad / came for came, bad in (*counts, together) if came >= _MEASUREMENTS_MIN)
-    return Contradictions(samples=samples, rejected_share=max(shares, default=0.0))
-
-
-def contradicts_itself(s: Situation, c: CompanionConfig) -> bool:
-    """Return whether so many of the vehicle's measurements were rejected that nothing says which are right."""
-    return s.vehicle.rejected_share > c.integrity.rejected_share_max
-
 
 _COURSE_OVER_S = 2.0  # heading and course are compared over so long: a cheap heading has 5 degrees of noise
 _COURSE_STD_MAX = 0.1  # standard deviation of the speed, as a share of it: 6 degrees of the course

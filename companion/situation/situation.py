@@ -6,7 +6,7 @@ from msgspec import Struct, structs
 
 from companion.autopilots.driver import AutopilotView
 from companion.config.landing import ChaseConfig
-from companion.core.data import Array, FlightLimits, Rival
+from companion.core.data import Array, FlightLimits, Quantity, Rival
 from companion.planning.guidance import ReferenceState
 from companion.vehicle.pad import PadPath
 from link.messages import ContactForecast, Vector3
@@ -62,6 +62,7 @@ class VehicleNews(Struct, frozen=True, kw_only=True):
         is_alive: its liveliness token is there; None when it never showed one.
         speed_std_m_s: of its horizontal velocity; infinite while that is not known.
         rejected_share: of its measurements of the last seconds, 0 to 1.
+        rejected: the quantity that this is the share of; None of all together.
         are_sightings_mixed: what the drone sees of the pad contradicts itself.
         has_pad_stepped: it is seen elsewhere on the vehicle than where it was confirmed.
         is_road_elsewhere: it is said to be higher or lower than any hill puts it.
@@ -75,6 +76,7 @@ class VehicleNews(Struct, frozen=True, kw_only=True):
     is_alive: bool | None = None
     speed_std_m_s: float = math.inf
     rejected_share: float = 0.0
+    rejected: Quantity | None = None
     are_sightings_mixed: bool = False
     has_pad_stepped: bool = False
     is_road_elsewhere: bool = False

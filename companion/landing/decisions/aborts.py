@@ -6,11 +6,12 @@ from companion.config.companion import CompanionConfig
 from companion.config.planning import LandingStyle
 from companion.core.data import GRAVITY_M_S2
 from companion.core.reasons import Cause, Reason
+from companion.integrity.contradictions import contradicts_itself, tell_rejected
 from companion.integrity.frames import tell_unseen
 from companion.integrity.heights import is_seen_too_near
 from companion.integrity.sightings import are_sightings_impossible, do_sightings_disagree, is_seen_elsewhere
 from companion.integrity.stamps import have_stamps_stepped, is_stamped_ahead
-from companion.integrity.vehicle_data import contradicted_heading, contradicts_itself
+from companion.integrity.vehicle_data import contradicted_heading
 from companion.landing.decisions.conditions import (
     AUTOPILOT_SILENT,
     MISSED,
@@ -212,7 +213,12 @@ ABORTS = (
         is_true=is_seen_too_near,
         hold_s=lambda _, c: c.touchdown.range_finder.off_hold_s,
     ),
-    Condition(reason=Reason.VEHICLE_CONTRADICTS_ITSELF, phases=LANDING_PHASES, is_true=contradicts_itself),
+    Condition(
+        reason=Reason.VEHICLE_CONTRADICTS_ITSELF,
+        phases=LANDING_PHASES,
+        is_true=contradicts_itself,
+        cause=tell_rejected(Reason.VEHICLE_CONTRADICTS_ITSELF),
+    ),
     Condition(
         reason=Reason.SEEN_ELSEWHERE,
         phases=LANDING_PHASES,

@@ -8,9 +8,9 @@ import math
 from companion.config.autopilot import Guide
 from companion.config.companion import CompanionConfig
 from companion.core.reasons import Cause, Reason
+from companion.integrity.contradictions import contradicts_itself, tell_rejected
 from companion.integrity.heights import road_above_ground_m, road_distance_m
 from companion.integrity.stamps import have_stamps_stepped, is_stamped_ahead
-from companion.integrity.vehicle_data import contradicts_itself
 from companion.landing.decisions.conditions import (
     AUTOPILOT_SILENT,
     Condition,
@@ -73,10 +73,6 @@ def _is_too_far(s: Situation, c: CompanionConfig) -> bool:
 def _too_far(s: Situation, c: CompanionConfig) -> Cause:
     values = (_vehicle_speed_m_s(s), _way_m(s, c), c.limits.landing_time_s, c.limits.range_max_m)
     return Cause(Reason.VEHICLE_TOO_FAR, values)
-
-
-def _tell_rejected(s: Situation, _: CompanionConfig) -> Cause:
-    return Cause(Reason.MEASUREMENTS_REJECTED, (100.0 * s.vehicle.rejected_share,))
 
 
 def _is_empty(s: Situation, c: CompanionConfig) -> bool:
@@ -216,7 +212,10 @@ OBSTACLES = (
     ),
     Condition(reason=Reason.AUTOPILOT_WARNS, phases=_BEFORE_A_CHASE, is_true=_is_warned),
     Condition(
-        reason=Reason.MEASUREMENTS_REJECTED, phases=_BEFORE_ANY_CHASE, is_true=contradicts_itself, cause=_tell_rejected
+        reason=Reason.MEASUREMENTS_REJECTED,
+        phases=_BEFORE_ANY_CHASE,
+        is_true=contradicts_itself,
+        cause=tell_rejected(Reason.MEASUREMENTS_REJECTED),
     ),
     *(replace(silence, phases=frozenset({Phase.WAITING})) for silence in AUTOPILOT_SILENT),
     EMPTY,

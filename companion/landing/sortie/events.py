@@ -2,8 +2,8 @@
 
 from companion.config.companion import CompanionConfig
 from companion.core.reasons import Cause, Reason
+from companion.integrity.contradictions import contradicts_itself, tell_rejected
 from companion.integrity.stamps import have_stamps_stepped, is_stamped_ahead
-from companion.integrity.vehicle_data import contradicts_itself
 from companion.landing.decisions.aborts import is_not_followed, is_token_lost, outruns
 from companion.landing.decisions.conditions import (
     HEARD,
@@ -42,7 +42,12 @@ LOST = (
         is_true=is_stamped_ahead,
         hold_s=lambda _, c: c.integrity.fix_ahead_hold_s,
     ),
-    Condition(reason=Reason.VEHICLE_CONTRADICTS_ITSELF, phases=_TOGETHER, is_true=contradicts_itself),
+    Condition(
+        reason=Reason.VEHICLE_CONTRADICTS_ITSELF,
+        phases=_TOGETHER,
+        is_true=contradicts_itself,
+        cause=tell_rejected(Reason.VEHICLE_CONTRADICTS_ITSELF),
+    ),
     Condition(
         reason=Reason.VEHICLE_OUTRUNS,
         phases=frozenset({Phase.FOLLOW, Phase.RETURN}),

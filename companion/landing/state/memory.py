@@ -16,10 +16,11 @@ from companion.core.data import Array
 from companion.core.reasons import Cause, Reason
 from companion.forecast.drivers import Drivers
 from companion.forecast.gusts import Gusts
+from companion.integrity.contradictions import Contradictions
 from companion.integrity.frames import FixedPhases
 from companion.integrity.sightings import SightingWatch
 from companion.integrity.stamps import FixStamps
-from companion.integrity.vehicle_data import Contradictions, CourseWatch
+from companion.integrity.vehicle_data import CourseWatch
 from companion.landing.steering.flown_plan import FlownPlan
 from companion.landing.steering.virtual_model import NO_RIDE, Ride, Tracking, move_tracking
 from companion.planning.guidance import GuidanceMemory, ReferenceState

@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from companion.core.data import Array, Forecast, Measurement, Quantity, RangeReading
+from companion.integrity.contradictions import Contradictions, update_contradictions
 from companion.integrity.frames import (
     are_frames_one,
     has_lost_fix,
@@ -14,7 +15,7 @@ from companion.integrity.frames import (
 )
 from companion.integrity.sightings import SightingWatch, forget_agreement, forget_step, update_sightings
 from companion.integrity.stamps import FixStamps, is_step_of_stamps, update_fix_stamps
-from companion.integrity.vehicle_data import Contradictions, update_contradictions, without_contradicted_heading
+from companion.integrity.vehicle_data import without_contradicted_heading
 from companion.integrity.way import way_error
 from companion.landing.state.memory import VehicleMemory, between
 from companion.landing.state.step_data import StepInputs, System

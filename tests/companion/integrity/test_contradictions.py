@@ -8,7 +8,7 @@ import pytest
 from companion.config.estimation import EstimatorKind
 from companion.core.data import Quantity
 from companion.core.reasons import Reason, sentence
-from companion.integrity.vehicle_data import Contradictions, contradicts_itself, update_contradictions
+from companion.integrity.contradictions import Contradictions, contradicts_itself, update_contradictions
 from companion.landing.decisions.feasibility import obstacle
 from link.records import replace
 from tests.companion.facts import CONFIG, NOW_NS, changed, situation
@@ -53,8 +53,9 @@ def test_of_fewer_than_twenty_measurements_nothing_is_said() -> None:
 
 
 def test_what_fits_of_one_quantity_does_not_hide_what_does_not_of_another() -> None:
-    share = after_all({Quantity.POSITION: [(3, 2)] * 20, Quantity.ACCELERATION: [(50, 0)] * 20}).rejected_share
-    assert share == pytest.approx(0.4)
+    counts = after_all({Quantity.POSITION: [(3, 2)] * 20, Quantity.ACCELERATION: [(50, 0)] * 20})
+    assert counts.rejected_share == pytest.approx(0.4)
+    assert counts.rejected is Quantity.POSITION
 
 
 def test_of_slow_data_all_together_are_judged() -> None:
@@ -62,6 +63,7 @@ def test_of_slow_data_all_together_are_judged() -> None:
     slow = dict.fromkeys((Quantity.POSITION, Quantity.VELOCITY, Quantity.HEADING), once_a_second)
     assert after({**slow}[Quantity.POSITION]).rejected_share == 0.0
     assert after_all(slow).rejected_share == pytest.approx(0.4)
+    assert after_all(slow).rejected is None
 
 
 def test_sightings_and_the_drones_own_data_are_no_contradictions_of_the_vehicles() -> None:
@@ -109,10 +111,20 @@ def test_it_is_due_every_half_second() -> None:
     assert Contradictions().is_due(0)
 
 
-def test_it_keeps_a_landing_from_being_begun_and_is_told_with_the_share() -> None:
-    facts = changed(situation(), rejected_share=0.41)
+@pytest.mark.parametrize(
+    ("quantity", "told", "remedy"),
+    [
+        (None, "data", "receiver"),
+        (Quantity.VELOCITY, "velocities", "unit (m/s)"),
+        (Quantity.HEADING, "headings", "unit (rad)"),
+        (Quantity.ACCELERATION, "accelerations", "axes (FLU)"),
+    ],
+)
+def test_it_keeps_a_landing_from_being_begun_and_says_what_is_rejected(
+    quantity: Quantity | None, told: str, remedy: str
+) -> None:
+    facts = changed(situation(), rejected_share=0.41, rejected=quantity)
     known = obstacle({Reason.MEASUREMENTS_REJECTED: NOW_NS}, facts, CONFIG)
     assert known is not None
-    assert sentence(known).startswith(
-        "vehicle data contradict themselves: 41 % of one quantity in the last 10 s were rejected"
-    )
+    assert sentence(known).startswith(f"vehicle data contradict themselves: 41% of its {told} in 10 s were rejected")
+    assert remedy in sentence(known)
