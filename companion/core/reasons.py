@@ -62,7 +62,7 @@ class Reason(Enum):
     VEHICLE_CONTRADICTS_ITSELF = "vehicle data contradict themselves: {:.0%} of its {} were rejected: see {}"
     SEEN_ELSEWHERE = (
         "pad is seen where both receivers say that it is not: see the detector's board and mounting, both receivers, "
-        "the vehicle's heading, or --receiver-frames apart where they have two base stations"
+        "the vehicle's antenna_to_pad_m and heading, or --receiver-frames apart where they have two base stations"
     )
     SIGHTINGS_DISAGREE = (
         "sightings of the pad contradict each other, or the vehicle's heading does: let one detector alone see one "

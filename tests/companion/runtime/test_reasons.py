@@ -46,3 +46,15 @@ def test_what_no_reason_says_is_refused_with_the_nearest_name() -> None:
 def test_reasons_are_shown_on_a_terminal_that_knows_ascii_only(capsys: pytest.CaptureFixture[str]) -> None:
     reasons()
     assert capsys.readouterr().out.isascii()
+
+
+@pytest.mark.parametrize("reason", [Reason.SEEN_ELSEWHERE, Reason.ROAD_BELOW])
+def test_lever_arm_of_the_wrong_sign_is_among_what_may_put_the_pad_elsewhere(
+    reason: Reason, capsys: pytest.CaptureFixture[str]
+) -> None:
+    reasons([reason.name])
+    assert "antenna_to_pad_m" in capsys.readouterr().out
+
+
+def test_pad_that_is_seen_elsewhere_is_told_with_the_lever_arm() -> None:
+    assert "antenna_to_pad_m" in sentence(Cause(Reason.SEEN_ELSEWHERE))
