@@ -65,8 +65,8 @@ class Reason(Enum):
         "the vehicle's antenna_to_pad_m and heading, or --receiver-frames apart where they have two base stations"
     )
     SIGHTINGS_DISAGREE = (
-        "sightings of the pad contradict each other, or the vehicle's heading does: let one detector alone see one "
-        "pattern, and nobody else publish pad_pose"
+        "sightings of the pad contradict each other, or the vehicle's heading does: see the camera's mounting (pad_pose"
+        " is in the drone's FLU), and let one detector alone see one pattern and nobody else publish pad_pose"
     )
     SIGHTINGS_IMPOSSIBLE = (
         "sightings move the pad as no vehicle moves: let the detector stamp each picture with the time of its exposure"

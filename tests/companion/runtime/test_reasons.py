@@ -58,3 +58,7 @@ def test_lever_arm_of_the_wrong_sign_is_among_what_may_put_the_pad_elsewhere(
 
 def test_pad_that_is_seen_elsewhere_is_told_with_the_lever_arm() -> None:
     assert "antenna_to_pad_m" in sentence(Cause(Reason.SEEN_ELSEWHERE))
+
+
+def test_mounting_of_the_camera_is_told_where_sightings_disagree_as_a_mirrored_one_has_them() -> None:
+    assert "mounting" in sentence(Cause(Reason.SIGHTINGS_DISAGREE))
