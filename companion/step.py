@@ -123,6 +123,7 @@ def _situation(memory: StepMemory, pad: PadPath | None, inputs: StepInputs, syst
             rejected_share=vehicle.contradictions.rejected_share,
             rejected=vehicle.contradictions.rejected,
             are_sightings_mixed=vehicle.sightings.are_mixed,
+            has_unplaced_sightings=inputs.vehicle.has_unplaced_sightings,
             has_pad_stepped=vehicle.sightings.has_stepped,
             is_road_elsewhere=bool(vehicle.is_road_elsewhere),
             has_shown_heading=vehicle.course.has_agreed,

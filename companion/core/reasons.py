@@ -68,6 +68,10 @@ class Reason(Enum):
         "sightings of the pad contradict each other, or the vehicle's heading does: see the camera's mounting (pad_pose"
         " is in the drone's FLU), and let one detector alone see one pattern and nobody else publish pad_pose"
     )
+    SIGHTINGS_UNPLACED = (
+        "pad not seen: its sightings are stamped when nobody knew where the drone was: see the detector's clock, and "
+        "let it stamp each picture with the time of its exposure"
+    )
     SIGHTINGS_IMPOSSIBLE = (
         "sightings move the pad as no vehicle moves: let the detector stamp each picture with the time of its exposure"
     )

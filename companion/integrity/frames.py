@@ -24,6 +24,7 @@ from companion.config.integrity import ReceiverFrames
 from companion.core.data import FIXED_STD_MAX_M, Measurement, Quantity
 from companion.core.reasons import Cause, Reason
 from companion.integrity.way import WayError
+from companion.situation.situation import Situation
 from link.records import replace
 
 _HOLD_S = 2.0  # two of the autopilot's reports of its receiver
@@ -173,8 +174,10 @@ _FRAME_REMEDIES = {
 }
 
 
-def tell_unseen(config: CompanionConfig) -> Cause:
-    """Return why a pad has to be seen, with what helps beside what is set already."""
+def tell_unseen(s: Situation, config: CompanionConfig) -> Cause:
+    """Return why a pad that has to be seen is not, with what helps beside what is set already."""
+    if s.vehicle.has_unplaced_sightings:
+        return Cause(Reason.SIGHTINGS_UNPLACED)
     if config.silent_vehicle is not None:
         return Cause(Reason.PAD_NOT_SEEN)
     return Cause(Reason.OFFSET_UNKNOWN, (_FRAME_REMEDIES[config.integrity.receiver_frames],))

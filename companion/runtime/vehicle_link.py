@@ -70,6 +70,11 @@ class Refusals:
         ]
         return max(found)[-1] if found else ""
 
+    def has_recent(self, what: str, why: str, now_ns: int) -> bool:
+        """Return whether one of a kind has been refused in the last seconds."""
+        kind = self._kinds.get((what, why))
+        return kind is not None and _is_recent(kind, now_ns)
+
     def news(self, now_ns: int) -> list[str]:
         """Return what is to be logged now: each kind at its first refusal, and again while its count rises."""
         lines: list[str] = []
@@ -87,6 +92,7 @@ def _is_recent(kind: _Kind, now_ns: int) -> bool:
 
 _UNINVITED = "comes for a vehicle of which the configuration says that it tells nothing (silent_vehicle)"
 _UNPLACED = "of a time at which the drone's place or attitude is not known; is the detector's clock right?"
+_SIGHTING_UNPLACED = ("pad_pose", "unplaced")
 _FUTURE_MAX_NS = 500_000_000  # a stamp farther ahead comes from a clock that is wrong
 _SAMPLES_MAX_PER_S = 400  # of a key: twice the fastest inertial unit's; each is fused again when a late one comes
 
@@ -139,7 +145,7 @@ class VehicleLink:
             self.refuse(key.rsplit("/", 1)[-1], "unreadable", str(error))
             return
         if key == self._keys.pad_pose and not measurements and state.history:
-            self.refuse(key.rsplit("/", 1)[-1], "unplaced", _UNPLACED)
+            self.refuse(*_SIGHTING_UNPLACED, _UNPLACED)
         if key == self._keys.imu and self._gravity.doubt is not None:
             self.refuse("acceleration", "gravity", self._gravity.doubt)
         self._received.append((key, measurements))
@@ -193,7 +199,13 @@ class VehicleLink:
             elif is_utc_known:
                 self.refuse(key.rsplit("/", 1)[-1], "ahead", f"come {ahead_ns * 1e-9:.1f} s before their stamps")
                 fix_ahead_s = ahead_ns * 1e-9 if key == self._keys.fix else fix_ahead_s
-        return VehicleInputs(measurements=tuple(taken), fix_ahead_s=fix_ahead_s, is_alive=self.alive, pad=self.pad)
+        return VehicleInputs(
+            measurements=tuple(taken),
+            fix_ahead_s=fix_ahead_s,
+            is_alive=self.alive,
+            pad=self.pad,
+            has_unplaced_sightings=self.refusals.has_recent(*_SIGHTING_UNPLACED, self._clock.monotonic_ns),
+        )
 
     def _is_flooded(self, key: str) -> bool:
         """Count a sample; return whether there were more of its key within a second than any sensor makes."""

@@ -64,6 +64,7 @@ class VehicleNews(Struct, frozen=True, kw_only=True):
         rejected_share: of its measurements of the last seconds, 0 to 1.
         rejected: the quantity that this is the share of; None of all together.
         are_sightings_mixed: what the drone sees of the pad contradicts itself.
+        has_unplaced_sightings: what lately came of its pad is stamped when nobody knew where the drone was.
         has_pad_stepped: it is seen elsewhere on the vehicle than where it was confirmed.
         is_road_elsewhere: it is said to be higher or lower than any hill puts it.
         has_shown_heading: its course has agreed with its heading.
@@ -78,6 +79,7 @@ class VehicleNews(Struct, frozen=True, kw_only=True):
     rejected_share: float = 0.0
     rejected: Quantity | None = None
     are_sightings_mixed: bool = False
+    has_unplaced_sightings: bool = False
     has_pad_stepped: bool = False
     is_road_elsewhere: bool = False
     has_shown_heading: bool = True

@@ -175,7 +175,7 @@ ABORTS = (
         phases=frozenset({Phase.CHASE}),
         is_true=_looks_in_vain,
         hold_s=lambda _, c: c.chase.unseen_hold_s,
-        cause=lambda _, c: tell_unseen(c),
+        cause=tell_unseen,
     ),
     Condition(reason=Reason.VEHICLE_LINK_LOST, phases=LANDING_PHASES, is_true=is_token_lost),
     Condition(

@@ -18,6 +18,7 @@ from companion.situation.situation import Situation
 
 _LASTING = (
     Reason.OFFSET_UNKNOWN,
+    Reason.SIGHTINGS_UNPLACED,
     Reason.SEEN_ELSEWHERE,
     Reason.SIGHTINGS_DISAGREE,
     Reason.SIGHTINGS_IMPOSSIBLE,

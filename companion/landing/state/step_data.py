@@ -43,12 +43,14 @@ class VehicleInputs(Struct, frozen=True, kw_only=True, eq=False):
         fix_ahead_s: by which the newest fix since then came before its stamp, so that it was refused; None if none was.
         is_alive: its liveliness token is there; None when it never showed one.
         pad: its own description of its pad.
+        has_unplaced_sightings: lately some came that are stamped when nobody knew where the drone was.
     """
 
     measurements: tuple[Measurement, ...] = ()
     fix_ahead_s: float | None = None
     is_alive: bool | None = None
     pad: PadGeometry | None = None
+    has_unplaced_sightings: bool = False
 
 
 class StepInputs(Struct, frozen=True, kw_only=True, eq=False):

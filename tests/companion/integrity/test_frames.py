@@ -10,7 +10,7 @@ from companion.autopilots.frame_moves import NO_MOVES, FrameMoves
 from companion.config.companion import CompanionConfig
 from companion.config.integrity import IntegrityConfig, ReceiverFrames
 from companion.core.data import FIXED_STD_MAX_M, Measurement, Quantity
-from companion.core.reasons import sentence
+from companion.core.reasons import Cause, Reason, sentence
 from companion.integrity.frames import (
     FixedPhases,
     are_frames_one,
@@ -26,6 +26,7 @@ from companion.landing.state.vehicle_update import update_vehicle
 from companion.situation.phases import Phase
 from link.messages import Vector3
 from link.records import replace
+from tests.companion.facts import changed, situation
 from tests.companion.world import Flight, reached
 
 STEP_NS = 100_000_000
@@ -283,6 +284,12 @@ def test_lost_fix_takes_what_sightings_have_told_until_others_agree() -> None:
 @pytest.mark.parametrize(("configured", "useless"), [(ReceiverFrames.ONE, "--receiver-frames"), (AUTO, "frames auto")])
 def test_unseen_pad_is_told_with_no_setting_that_is_set_already(configured: ReceiverFrames, useless: str) -> None:
     config = CompanionConfig(integrity=IntegrityConfig(receiver_frames=configured))
-    told = sentence(tell_unseen(config))
+    told = sentence(tell_unseen(situation(), config))
     assert "use a pattern detector" in told
     assert useless not in told
+
+
+def test_pad_of_which_all_sightings_are_refused_is_told_with_the_detectors_clock() -> None:
+    told = tell_unseen(changed(situation(), has_unplaced_sightings=True), CompanionConfig())
+    assert told == Cause(Reason.SIGHTINGS_UNPLACED)
+    assert "detector's clock" in sentence(told)
