@@ -84,26 +84,22 @@ def dated_velocities(lag: VelocityLag, measurements: Sequence[Measurement]) -> t
 
 def learn_lag(lag: VelocityLag, measurements: Sequence[Measurement]) -> VelocityLag:
     """Return the lag after `measurements`, whose stamps are the receiver's own."""
-    places = _told(measurements, Quantity.POSITION)
-    velocities = _told(measurements, Quantity.VELOCITY)
+    places = told_of(measurements, Quantity.POSITION)
+    velocities = told_of(measurements, Quantity.VELOCITY)
     if not places and not velocities:
         return lag
-    places, velocities = _recent((*lag.places, *places)), _recent((*lag.velocities, *velocities))
+    places, velocities = recent((*lag.places, *places)), recent((*lag.velocities, *velocities))
     lag = replace(lag, places=places, velocities=velocities)
-    window = _window(places, velocities)
+    window = next_window(places, velocities)
     if window is None:
         return lag
-    begun, ended = window
-    within = [begun_at := _at(velocities, begun.t_ns)]
-    within += [one for one in velocities if begun.t_ns < one.t_ns < ended.t_ns]
-    within.append(ended_at := _at(velocities, ended.t_ns))
-    lag = replace(lag, places=tuple(one for one in places if one.t_ns >= ended.t_ns))
-    if any(after.t_ns - before.t_ns > _GAP_MAX_NS for before, after in pairwise(within)):
-        return lag
-    return _with_window(lag, (begun, ended), (begun_at, ended_at), within)
+    within = velocities_within(velocities, window)
+    lag = replace(lag, places=tuple(one for one in places if one.t_ns >= window[1].t_ns))
+    return lag if has_gap(within) else _with_window(lag, window, within)
 
 
-def _told(measurements: Sequence[Measurement], quantity: Quantity) -> tuple[Told, ...]:
+def told_of(measurements: Sequence[Measurement], quantity: Quantity) -> tuple[Told, ...]:
+    """Return the places or the velocities among `measurements`."""
     return tuple(
         Told(one.t_ns, float(one.value[0]), float(one.value[1]), 0.5 * float(one.covariance.diagonal()[:2].sum()))
         for one in measurements
@@ -111,7 +107,7 @@ def _told(measurements: Sequence[Measurement], quantity: Quantity) -> tuple[Told
     )
 
 
-def _recent(told: tuple[Told, ...]) -> tuple[Told, ...]:
+def recent(told: tuple[Told, ...]) -> tuple[Told, ...]:
     """Return them in order, each time once, without those that are old."""
     if not told:
         return told
@@ -119,7 +115,7 @@ def _recent(told: tuple[Told, ...]) -> tuple[Told, ...]:
     return tuple(sorted({one.t_ns: one for one in told if one.t_ns > newest_ns - _KEPT_NS}.values()))
 
 
-def _window(places: tuple[Told, ...], velocities: tuple[Told, ...]) -> tuple[Told, Told] | None:
+def next_window(places: tuple[Told, ...], velocities: tuple[Told, ...]) -> tuple[Told, Told] | None:
     """Return the places at which the next window begins and ends, None while there is none."""
     if not velocities:
         return None
@@ -128,6 +124,18 @@ def _window(places: tuple[Told, ...], velocities: tuple[Told, ...]) -> tuple[Tol
         return None
     begun = next(one for one in reversed(covered) if covered[-1].t_ns - one.t_ns >= _WINDOW_NS)
     return (begun, covered[-1]) if covered[-1].t_ns - begun.t_ns <= _WINDOW_MAX_NS else None
+
+
+def velocities_within(velocities: tuple[Told, ...], window: tuple[Told, Told]) -> list[Told]:
+    """Return the velocities from the place at which a window begins to that at which it ends, these included."""
+    begun, ended = window
+    inside = (one for one in velocities if begun.t_ns < one.t_ns < ended.t_ns)
+    return [_at(velocities, begun.t_ns), *inside, _at(velocities, ended.t_ns)]
+
+
+def has_gap(within: Sequence[Told]) -> bool:
+    """Return whether two of the velocities are too far apart for a straight line between them."""
+    return any(after.t_ns - before.t_ns > _GAP_MAX_NS for before, after in pairwise(within))
 
 
 def _at(velocities: tuple[Told, ...], t_ns: int) -> Told:
@@ -143,13 +151,11 @@ def _at(velocities: tuple[Told, ...], t_ns: int) -> Told:
     )
 
 
-def _with_window(
-    lag: VelocityLag, places: tuple[Told, Told], ends: tuple[Told, Told], within: Sequence[Told]
-) -> VelocityLag:
-    """Return the lag after a window: its first and last place and velocity, and the velocities within it."""
-    (begun, ended), (first, last) = places, ends
+def _with_window(lag: VelocityLag, window: tuple[Told, Told], within: Sequence[Told]) -> VelocityLag:
+    """Return the lag after a window: its first and last place, and the velocities from one to the other."""
+    (begun, ended), first, last = window, within[0], within[-1]
     lasted_s = (ended.t_ns - begun.t_ns) * 1e-9
-    east_m_s, north_m_s = (_mean(within, axis) for axis in ("east", "north"))
+    east_m_s, north_m_s = (mean_of(within, axis) for axis in ("east", "north"))
     speed_m_s = math.hypot(east_m_s, north_m_s)
     if speed_m_s < _SPEED_MIN_M_S:
         return lag
@@ -171,7 +177,7 @@ def _with_window(
     return replace(learnt, is_known=lag.is_known or learnt.is_significant)
 
 
-def _mean(within: Sequence[Told], axis: str) -> float:
+def mean_of(within: Sequence[Told], axis: str) -> float:
     """Return the mean over time of one axis of velocities that are straight lines between their stamps."""
     area = sum(
         0.5 * (getattr(before, axis) + getattr(after, axis)) * (after.t_ns - before.t_ns)

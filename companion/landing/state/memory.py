@@ -30,6 +30,7 @@ from companion.vehicle.estimator import EstimatorMemory
 from companion.vehicle.hindsight import Hindsight
 from companion.vehicle.range_watch import RangeWatch
 from companion.vehicle.velocity_lag import VelocityLag
+from companion.vehicle.velocity_point import VelocityPoint
 from link.messages import ContactForecast, Vector3
 from link.records import replace
 
@@ -77,6 +78,7 @@ class VehicleMemory(Struct, frozen=True, kw_only=True, eq=False):
     Attributes:
         estimator: the estimator's own memory.
         velocity_lag: by how much its velocities are older than its places.
+        velocity_point: of which point they are.
         hindsight: how the vehicle has driven, and how late that is known.
         fix_stamps: whether its fixes come from the future, and whether a clock was set.
         contradictions: of its data.
@@ -91,6 +93,7 @@ class VehicleMemory(Struct, frozen=True, kw_only=True, eq=False):
 
     estimator: EstimatorMemory | None = None
     velocity_lag: VelocityLag = field(default_factory=VelocityLag)
+    velocity_point: VelocityPoint = field(default_factory=VelocityPoint)
     hindsight: Hindsight = field(default_factory=Hindsight)
     fix_stamps: FixStamps = field(default_factory=FixStamps)
     contradictions: Contradictions = field(default_factory=Contradictions)

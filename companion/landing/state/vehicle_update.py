@@ -28,6 +28,7 @@ from companion.vehicle.pad_reach import is_agreement_old
 from companion.vehicle.range_watch import RangeWatch, moved_up, watch_ranges
 from companion.vehicle.surface import higher_by_road_m, surface_measurements
 from companion.vehicle.velocity_lag import dated_velocities, learn_lag
+from companion.vehicle.velocity_point import VelocityPoint, learn_point, velocities_of_antenna
 from link.records import replace
 
 _APPROACHING = LANDING_PHASES | {Phase.ABORT, Phase.TOUCHDOWN}
@@ -41,7 +42,10 @@ def update_vehicle(vehicle: VehicleMemory, inputs: StepInputs, system: System) -
     vehicle = _in_present_frame(_in_present_utc(vehicle, inputs), inputs, system)
     estimator, now_ns = vehicle.estimator, inputs.monotonic_ns
     lag = learn_lag(vehicle.velocity_lag, inputs.vehicle.measurements)
+    is_lag_new = lag.is_known and not vehicle.velocity_lag.is_known
     measurements, seen = dated_velocities(lag, inputs.vehicle.measurements), inputs.autopilot.range_down
+    point = learn_point(VelocityPoint() if is_lag_new else vehicle.velocity_point, measurements)
+    measurements = velocities_of_antenna(point, measurements)
     if seen is not None and estimator is not None and _is_to_be_read(seen, vehicle.ranges, inputs.t_ns):
         then = system.estimator.forecast(estimator, seen.t_ns, _PRESENT_OFFSETS_S)
         vehicle_up_m = None if then is None else float(then.position_enu_m[0, 2])
@@ -59,8 +63,8 @@ def update_vehicle(vehicle: VehicleMemory, inputs: StepInputs, system: System) -
         is_of_stamps = is_step_of_stamps(vehicle.fix_stamps, (inputs.t_ns - newest_fix_ns) * 1e-9, way)
         place_step = system.estimator.health(estimator).place_step
         phases = with_place_step(phases, place_step, way if is_of_stamps else None)
-    if lag.is_known and not vehicle.velocity_lag.is_known:
-        phases = without_place_step(phases)  # velocities that were too old have led the estimate away from the places
+    if is_lag_new or (point.is_known and not vehicle.velocity_point.is_known):
+        phases = without_place_step(phases)  # velocities that were too old, or of another point, have led it away
     if contradictions.is_due(now_ns):
         health = system.estimator.health(estimator)
         contradictions = update_contradictions(contradictions, health, now_ns)
@@ -71,6 +75,7 @@ def update_vehicle(vehicle: VehicleMemory, inputs: StepInputs, system: System) -
         vehicle,
         estimator=estimator,
         velocity_lag=lag,
+        velocity_point=point,
         hindsight=update_hindsight(vehicle.hindsight, system.estimator, estimator, inputs.t_ns, monotonic_ns=now_ns),
         fix_stamps=update_fix_stamps(
             vehicle.fix_stamps,
