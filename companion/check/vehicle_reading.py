@@ -7,8 +7,8 @@ import statistics
 from companion.check.observation import VehicleFacts
 from companion.config.integrity import IntegrityConfig
 from companion.core.data import Quantity
-from companion.vehicle.gravity_watch import GravityWatch
 from companion.vehicle.inputs import imu_measurements
+from companion.vehicle.unit_watch import UnitWatch
 from link.frames.rotations import yaw_of
 from link.messages import Fix, FixVelocity, VehicleImu
 from link.payloads import cdr
@@ -36,7 +36,7 @@ class VehicleReader:
         self._std_m: float | None = None
         self._has_velocity = False
         self._tells_acceleration = False
-        self._gravity = GravityWatch()
+        self._unit = UnitWatch()
         self._heading: tuple[int, float] | None = None
         self._offs: list[complex] = []
         self._speeds_m_s: list[float] = []
@@ -79,7 +79,7 @@ class VehicleReader:
             message = cdr.decode(VehicleImu, payload)
         except PayloadError:
             return
-        measurements = imu_measurements(message, self._gravity)
+        measurements = imu_measurements(message, self._unit)
         self._tells_acceleration |= any(one.quantity is Quantity.ACCELERATION for one in measurements)
         if message.orientation_wxyz is not None:
             self._heading = (message.t_ns, yaw_of(message.orientation_wxyz))
@@ -100,7 +100,7 @@ class VehicleReader:
             std_m=self._std_m,
             has_velocity=self._has_velocity,
             tells_acceleration=self._tells_acceleration,
-            acceleration_refused_why=self._gravity.doubt,
+            acceleration_refused_why=self._unit.gravity.doubt,
             describes_pad=pad.is_answered,
             pad_refused_why=pad.refused_why,
             antenna_behind_pad_m=0.0 if pad.pad is None else pad.pad.antenna_to_pad_m[0],

@@ -9,8 +9,8 @@ from companion.core.data import Measurement
 from companion.core.reasons import Cause, Reason, sentence
 from companion.landing.state.step_data import VehicleInputs
 from companion.runtime.step_clock import StepClock
-from companion.vehicle.gravity_watch import GravityWatch
 from companion.vehicle.inputs import measurements_of
+from companion.vehicle.unit_watch import UnitWatch
 from link.messages import CommandReply, PadGeometry
 from link.payloads.checks import PayloadError
 from link.payloads.json_messages import is_possible
@@ -118,7 +118,7 @@ class VehicleLink:
         self.refusals = Refusals()
         self._keys = keys
         self._clock = clock
-        self._gravity = GravityWatch()
+        self._unit = UnitWatch()
         self._received: list[tuple[str, list[Measurement]]] = []  # on which key, since the last step
         self._second_ns = 0  # in which samples are counted, when it began
         self._heard: Counter[str] = Counter()
@@ -140,14 +140,15 @@ class VehicleLink:
             self.refuse(key.rsplit("/", 1)[-1], "flood", f"come more than {_SAMPLES_MAX_PER_S} times in a second")
             return
         try:
-            measurements = measurements_of(key, payload, self._keys, state, self._gravity)
+            measurements = measurements_of(key, payload, self._keys, state, self._unit)
         except PayloadError as error:
             self.refuse(key.rsplit("/", 1)[-1], "unreadable", str(error))
             return
         if key == self._keys.pad_pose and not measurements and state.history:
             self.refuse(*_SIGHTING_UNPLACED, _UNPLACED)
-        if key == self._keys.imu and self._gravity.doubt is not None:
-            self.refuse("acceleration", "gravity", self._gravity.doubt)
+        if key == self._keys.imu:
+            for what, why in self._unit.doubts().items():
+                self.refuse(what, "doubted", why)
         self._received.append((key, measurements))
 
     def receive_pad(self, pad: PadGeometry) -> bool:

@@ -6,8 +6,8 @@ import numpy as np
 
 from companion.autopilots.state import AutopilotState
 from companion.core.data import Array, Measurement, OwnState, Quantity
-from companion.vehicle.gravity_watch import GravityWatch
 from companion.vehicle.range_watch import ATTITUDE_AGE_MAX_S
+from companion.vehicle.unit_watch import UnitWatch
 from link.frames.geodesy import LocalFrame, is_metric, local_from_geodetic, scale_of
 from link.frames.rotations import roll_pitch_yaw_of, rotate, yaw_of
 from link.messages import Fix, FixVelocity, Matrix3, PadSighting, Quaternion, Vector3, VehicleImu
@@ -51,9 +51,7 @@ _VALUE_MAX = {
 }
 
 
-def measurements_of(
-    key: str, payload: bytes, keys: Keys, state: AutopilotState, gravity: GravityWatch
-) -> list[Measurement]:
+def measurements_of(key: str, payload: bytes, keys: Keys, state: AutopilotState, unit: UnitWatch) -> list[Measurement]:
     """Return what a Zenoh sample of the vehicle measures, nothing of one that is no measurement or too early.
 
     Args:
@@ -61,18 +59,16 @@ def measurements_of(
         payload: CDR.
         keys: of the Zenoh contract.
         state: of the autopilot, for its local frame W and the drone's place when it saw the pad.
-        gravity: takes what the vehicle's accelerometer tells, which counts while that is believed.
+        unit: watches the vehicle's inertial unit, of which counts what is believed.
 
     Raises:
         PayloadError: it cannot be decoded, or is absurd.
     """
     with np.errstate(over="ignore", invalid="ignore"):  # what gets too large for a number is refused as absurd
-        return [plausible(measurement) for measurement in _decode(key, payload, keys, state, gravity)]
+        return [plausible(measurement) for measurement in _decode(key, payload, keys, state, unit)]
 
 
-def _decode(
-    key: str, payload: bytes, keys: Keys, state: AutopilotState, gravity: GravityWatch
-) -> tuple[Measurement, ...]:
+def _decode(key: str, payload: bytes, keys: Keys, state: AutopilotState, unit: UnitWatch) -> tuple[Measurement, ...]:
     frame = state.view.frame
     if key == keys.fix:
         fix = cdr.decode(Fix, payload)
@@ -81,7 +77,7 @@ def _decode(
         velocity = cdr.decode(FixVelocity, payload)
         return () if frame is None else velocity_measurements(velocity, frame)
     if key == keys.imu:
-        return imu_measurements(cdr.decode(VehicleImu, payload), gravity)
+        return imu_measurements(cdr.decode(VehicleImu, payload), unit)
     if key == keys.pad_pose:
         sighting = cdr.decode(PadSighting, payload)
         own_then = state.own_at(sighting.t_ns)
@@ -157,29 +153,31 @@ def velocity_measurements(message: FixVelocity, frame: LocalFrame) -> tuple[Meas
     return (velocity, _yaw_rate(message.t_ns, message.yaw_rate_rad_s, message.yaw_rate_variance_rad2_s2))
 
 
-def imu_measurements(message: VehicleImu, gravity: GravityWatch) -> tuple[Measurement, ...]:
+def imu_measurements(message: VehicleImu, unit: UnitWatch) -> tuple[Measurement, ...]:
     """Return heading, yaw rate, acceleration along the vehicle and tilt, as far as the message has them.
 
-    Args:
-        message: of the vehicle's unit.
-        gravity: takes the acceleration, which is measured while that is believed.
+    `unit` watches the vehicle's inertial unit: what is not believed of it is not measured.
     """
     found: list[Measurement] = []
+    covariance = message.orientation_covariance_rad2
+    variance = _HEADING_STD_RAD**2 if covariance is None else covariance[8]
     if message.orientation_wxyz is not None:
-        covariance = message.orientation_covariance_rad2
-        variance = _HEADING_STD_RAD**2 if covariance is None else covariance[8]
         found.append(_scalar(message.t_ns, Quantity.HEADING, yaw_of(message.orientation_wxyz), variance))
     if message.angular_velocity_flu_rad_s is not None:
         rate_covariance = message.angular_velocity_covariance_rad2_s2
         rate_variance = None if rate_covariance is None else rate_covariance[8]
-        found.append(_yaw_rate(message.t_ns, message.angular_velocity_flu_rad_s[2], rate_variance))
+        rate_rad_s = message.angular_velocity_flu_rad_s[2]
+        if message.orientation_wxyz is not None:
+            unit.turns.take(message.t_ns, yaw_of(message.orientation_wxyz), variance, rate_rad_s)
+        if unit.turns.is_believed:
+            found.append(_yaw_rate(message.t_ns, rate_rad_s, rate_variance))
     force_m_s2 = message.specific_force_flu_m_s2
     if force_m_s2 is not None and any(force_m_s2):  # exactly none at all is what drivers without it leave behind
         force_covariance = message.specific_force_covariance_m2_s4
         force_variance = _ACCELERATION_STD_M_S2**2 if force_covariance is None else force_covariance[0]
-        gravity.take(message.t_ns, force_m_s2, message.orientation_wxyz)
+        unit.gravity.take(message.t_ns, force_m_s2, message.orientation_wxyz)
         forward_m_s2 = _forward_force_m_s2(force_m_s2, message.orientation_wxyz)
-        if gravity.is_believed:
+        if unit.gravity.is_believed:
             found.append(_scalar(message.t_ns, Quantity.ACCELERATION, forward_m_s2, force_variance))
     tilt = _tilt(message)
     return tuple(found) if tilt is None else (*found, tilt)

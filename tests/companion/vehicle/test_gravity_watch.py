@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from companion.core.data import Quantity
 from companion.vehicle.gravity_watch import GravityWatch
 from companion.vehicle.inputs import imu_measurements, plausible
+from companion.vehicle.unit_watch import UnitWatch
 from link.frames.rotations import conjugate, quaternion_from_roll_pitch_yaw, rotate
 from link.messages import Matrix3, Vector3, VehicleImu
 
@@ -25,9 +26,15 @@ def felt(*forces: Vector3) -> GravityWatch:
     return watch
 
 
-def upright() -> GravityWatch:
+def unit_of(gravity: GravityWatch) -> UnitWatch:
+    unit = UnitWatch()
+    unit.gravity = gravity
+    return unit
+
+
+def upright() -> UnitWatch:
     """A unit that is believed."""
-    return felt(*[(0.0, 0.0, G)] * 60)
+    return unit_of(felt(*[(0.0, 0.0, G)] * 60))
 
 
 def swaying(rise_m_s2: float, brake_m_s2: float) -> list[Vector3]:
@@ -65,7 +72,7 @@ def test_accelerometer_at_the_noise_of_its_data_sheet_is_not_better_than_the_bod
 def test_acceleration_is_measured_once_a_second_of_it_has_shown_gravity() -> None:
     imu = VehicleImu(t_ns=1, specific_force_flu_m_s2=(-2.5, 0.4, 9.7))
     young = felt(*[(0.0, 0.0, G)] * 40)
-    assert imu_measurements(imu, young) == ()
+    assert imu_measurements(imu, unit_of(young)) == ()
     assert young.doubt is None
     assert len(imu_measurements(imu, upright())) == 1
 
@@ -96,7 +103,7 @@ def test_cheap_unit_without_a_calibration_is_believed() -> None:
 )
 def test_other_units_and_axes_are_told_and_not_measured(told: Callable[[float, float, float], Vector3]) -> None:
     watch = felt(*(told(*force) for force in swaying(2.0, 4.0)))
-    assert imu_measurements(VehicleImu(t_ns=1, specific_force_flu_m_s2=told(-4.0, 0.0, G)), watch) == ()
+    assert imu_measurements(VehicleImu(t_ns=1, specific_force_flu_m_s2=told(-4.0, 0.0, G)), unit_of(watch)) == ()
     assert watch.doubt is not None
     assert "axes (FLU)" in watch.doubt
     assert len(watch.doubt) <= 90  # more is cut off where it is told

@@ -12,7 +12,6 @@ from scipy.spatial.transform import Rotation
 from companion.autopilots.driver import NO_AUTOPILOT
 from companion.autopilots.state import AutopilotState
 from companion.core.data import Measurement, Quantity
-from companion.vehicle.gravity_watch import GravityWatch
 from companion.vehicle.inputs import (
     fix_measurement,
     imu_measurements,
@@ -21,6 +20,7 @@ from companion.vehicle.inputs import (
     sighting_measurement,
     velocity_measurements,
 )
+from companion.vehicle.unit_watch import UnitWatch
 from link.frames.geodesy import LocalFrame, Projection, geodetic_from_enu, geodetic_from_local
 from link.frames.rotations import quaternion_from_roll_pitch_yaw
 from link.messages import Fix, FixVelocity, Matrix3, PadSighting, Vector3, VehicleImu
@@ -65,8 +65,8 @@ def test_nothing_is_placed_before_the_autopilot_has_told_its_frame() -> None:
     velocity = FixVelocity(t_ns=START_NS, velocity_enu_m_s=(1.0, 2.0, 0.0))
     unknown, known = AutopilotState(), AutopilotState(view=replace(NO_AUTOPILOT, frame=FRAME))
     for key, payload in ((KEYS.fix, cdr.encode(fix)), (KEYS.fix_velocity, cdr.encode(velocity))):
-        assert measurements_of(key, payload, KEYS, unknown, GravityWatch()) == []
-        assert len(measurements_of(key, payload, KEYS, known, GravityWatch())) == 1
+        assert measurements_of(key, payload, KEYS, unknown, UnitWatch()) == []
+        assert len(measurements_of(key, payload, KEYS, known, UnitWatch())) == 1
 
 
 def test_stated_covariance_is_taken_and_a_missing_one_is_replaced() -> None:
@@ -124,14 +124,14 @@ def test_velocity_is_that_of_the_place_that_the_fixes_show(projection: Projectio
 @given(roll=st.floats(-0.5, 0.5), pitch=st.floats(-0.5, 0.5), yaw=st.floats(-3.1, 3.1))
 def test_heading_is_the_yaw_of_the_attitude(roll: float, pitch: float, yaw: float) -> None:
     imu = VehicleImu(t_ns=1, orientation_wxyz=quaternion_from_roll_pitch_yaw(roll, pitch, yaw))
-    (heading,) = imu_measurements(imu, GravityWatch())
+    (heading,) = imu_measurements(imu, UnitWatch())
     assert heading.quantity is Quantity.HEADING
     assert heading.value[0] == pytest.approx(yaw, abs=1e-9)
 
 
 @pytest.mark.parametrize("force", [None, (0.0, 0.0, 0.0)])
 def test_imu_without_attitude_rate_and_force_says_nothing(force: Vector3 | None) -> None:
-    assert imu_measurements(VehicleImu(t_ns=1, specific_force_flu_m_s2=force), GravityWatch()) == ()
+    assert imu_measurements(VehicleImu(t_ns=1, specific_force_flu_m_s2=force), UnitWatch()) == ()
 
 
 def test_imu_variances_are_those_about_the_vertical() -> None:
@@ -144,7 +144,7 @@ def test_imu_variances_are_those_about_the_vertical() -> None:
             angular_velocity_flu_rad_s=(0.5, 0.6, 0.7),
             angular_velocity_covariance_rad2_s2=diagonal,
         ),
-        GravityWatch(),
+        UnitWatch(),
     )
     assert heading.covariance.tolist() == [[0.3]]
     assert rate.covariance.tolist() == [[0.3]]
@@ -160,7 +160,7 @@ def told_tilt(*, tilt_variance_rad2: float, rates: tuple[float, float, float] | 
         angular_velocity_flu_rad_s=rates,
         angular_velocity_covariance_rad2_s2=None if rates is None else (1e-4, 0.0, 0.0, 0.0, 2e-4, 0.0, 0.0, 0.0, 3e-4),
     )
-    return [one for one in imu_measurements(known, GravityWatch()) if one.quantity is Quantity.TILT]
+    return [one for one in imu_measurements(known, UnitWatch()) if one.quantity is Quantity.TILT]
 
 
 def test_tilt_and_its_rates_are_measured_where_the_unit_knows_them() -> None:
@@ -217,7 +217,7 @@ def test_sighting_is_taken_only_where_the_drones_attitude_was_known(age_s: float
         position_covariance_m2=COVARIANCE,
     )
     state = AutopilotState(view=replace(NO_AUTOPILOT, frame=FRAME), history=(own,))
-    assert len(measurements_of(KEYS.pad_pose, cdr.encode(sighting), KEYS, state, GravityWatch())) == count
+    assert len(measurements_of(KEYS.pad_pose, cdr.encode(sighting), KEYS, state, UnitWatch())) == count
 
 
 @pytest.mark.parametrize("variances", [(0.0, 0.0, 0.0), (0.1, 0.1, 0.0), (1e-30, 1.0, 1.0)])
@@ -249,4 +249,4 @@ def test_velocity_that_no_number_holds_in_the_drones_frame_is_refused(axis: int)
     message = FixVelocity(t_ns=START_NS, velocity_enu_m_s=(huge[0], huge[1], huge[2]), is_vertical_measured=True)
     state = AutopilotState(view=replace(NO_AUTOPILOT, frame=FRAME))
     with pytest.raises(PayloadError, match="absurd"):
-        measurements_of(KEYS.fix_velocity, cdr.encode(message), KEYS, state, GravityWatch())
+        measurements_of(KEYS.fix_velocity, cdr.encode(message), KEYS, state, UnitWatch())

@@ -17,8 +17,8 @@ from typing import TypeVar
 
 import pytest
 
-from companion.vehicle.gravity_watch import GravityWatch
 from companion.vehicle.inputs import fix_measurement, imu_measurements, velocity_measurements
+from companion.vehicle.unit_watch import UnitWatch
 from link.frames.geodesy import Datum, LocalFrame, Projection
 from link.frames.rotations import yaw_of
 from link.messages import Fix, FixVelocity, PadGeometry, VehicleImu
@@ -129,7 +129,7 @@ def assert_is_the_drive(car: Vehicle) -> None:
     (velocity,) = velocity_measurements(car.velocities[-1], FRAME)
     assert hypot(*velocity.value[:2]) == pytest.approx(SPEED_KNOTS * 1852.0 / 3600.0, abs=1e-3)
     assert velocity.covariance[2, 2] > 100.0  # the vertical velocity was not measured
-    (heading,) = imu_measurements(car.attitudes[-1], GravityWatch())
+    (heading,) = imu_measurements(car.attitudes[-1], UnitWatch())
     assert degrees(heading.value[0]) == pytest.approx(90.0 - 77.6)
 
 
