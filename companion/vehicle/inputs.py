@@ -179,17 +179,18 @@ def imu_measurements(message: VehicleImu, unit: UnitWatch) -> tuple[Measurement,
         forward_m_s2 = _forward_force_m_s2(force_m_s2, message.orientation_wxyz)
         if unit.gravity.is_believed:
             found.append(_scalar(message.t_ns, Quantity.ACCELERATION, forward_m_s2, force_variance))
-    tilt = _tilt(message)
+    tilt = _tilt(message, believes_rates=unit.turns.is_believed)
     return tuple(found) if tilt is None else (*found, tilt)
 
 
-def _tilt(message: VehicleImu) -> Measurement | None:
+def _tilt(message: VehicleImu, *, believes_rates: bool) -> Measurement | None:
     """Return roll, pitch and how fast they change, None of a unit that does not say that it knows them."""
     q_WV, covariance = message.orientation_wxyz, message.orientation_covariance_rad2
     if q_WV is None or covariance is None or max(covariance[0], covariance[4]) > _TILT_KNOWN_STD_RAD**2:
         return None
     roll_rad, pitch_rad, _ = roll_pitch_yaw_of(q_WV)
-    rates, rate_covariance = message.angular_velocity_flu_rad_s, message.angular_velocity_covariance_rad2_s2
+    rates = message.angular_velocity_flu_rad_s if believes_rates else None
+    rate_covariance = message.angular_velocity_covariance_rad2_s2
     turning_rad_s = _tilt_rates(roll_rad, pitch_rad, (0.0, 0.0, 0.0) if rates is None else rates)
     variances = [covariance[0], covariance[4], _UNKNOWN_RATE_VARIANCE_RAD2_S2, _UNKNOWN_RATE_VARIANCE_RAD2_S2]
     if rates is not None:

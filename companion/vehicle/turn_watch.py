@@ -58,7 +58,6 @@ class TurnWatch:
         if len(self._windows) < _WINDOWS_MIN:
             return None
         told_rad, turned_rad, variance_rad2 = map(sum, zip(*self._windows, strict=True))
-        share = turned_rad / told_rad
-        if abs(share - 1.0) <= _OFF_MAX + _STDS * math.sqrt(variance_rad2) / told_rad:
+        if abs(turned_rad / told_rad - 1.0) <= _OFF_MAX + _STDS * math.sqrt(variance_rad2) / told_rad:
             return None
-        return f"heading turns by {share:.2f} of what it tells: see rad/s, sign (counter-clockwise)"
+        return "the heading of the same unit turns otherwise: see rad/s, sign (counter-clockwise)"

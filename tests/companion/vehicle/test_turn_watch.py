@@ -56,6 +56,18 @@ def test_rate_in_other_units_or_of_the_other_sign_is_told(factor: float) -> None
     assert len(why) <= 90  # more is cut off where it is told
 
 
+def test_rates_of_the_tilt_are_as_little_believed_as_that_of_the_heading() -> None:
+    imu = VehicleImu(
+        t_ns=1,
+        orientation_wxyz=(1.0, 0.0, 0.0, 0.0),
+        orientation_covariance_rad2=(1e-4, 0.0, 0.0, 0.0, 1e-4, 0.0, 0.0, 0.0, 1e-4),
+        angular_velocity_flu_rad_s=(0.5, 0.6, 0.7),
+    )
+    for unit, says_something in ((UnitWatch(), True), (driven(street, told=lambda _, rate: -rate), False)):
+        (tilt,) = (one for one in imu_measurements(imu, unit) if one.quantity is Quantity.TILT)
+        assert bool(tilt.covariance[2, 2] < 1.0) is says_something
+
+
 def test_rate_that_runs_away_for_a_second_is_believed_again() -> None:
     unit = driven(street, told=lambda t_s, rate: 9.0 if 7.0 < t_s < 8.0 else rate)
     assert unit.doubts() == {}
