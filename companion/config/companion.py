@@ -16,6 +16,11 @@ from companion.core.data import FlightLimits
 from link.messages import PadGeometry
 from link.program.toml_config import NotNegative, Positive, StrictModel
 
+Speed = Annotated[float, Field(ge=0.1, le=1e4)]
+Acceleration = Annotated[float, Field(ge=0.5, le=1e4)]
+Jerk = Annotated[float, Field(ge=1.0, le=1e4)]
+"""With less no drone is flown: the least of ArduPilot's WPNAV_SPEED_UP and _DN, WPNAV_ACCEL, and PSC_JERK_XY."""
+
 
 class LimitsConfig(StrictModel):
     """What the planner may ask at most; the autopilot's own parameters can only lower it.
@@ -23,13 +28,13 @@ class LimitsConfig(StrictModel):
     The acceleration leaves half of a 45 degree tilt (9.8 m/s^2) to drag, wind and feedback.
     """
 
-    speed_max_m_s: Positive = 30.0  # drag, 0.17 1/s by mass, takes half of a 45 degree tilt then
-    climb_max_m_s: Positive = 3.0  # PX4 MPC_Z_VEL_MAX_UP
-    descent_max_m_s: Positive = 1.5  # PX4 MPC_Z_VEL_MAX_DN
-    acceleration_max_m_s2: Positive = 5.0
-    vertical_acceleration_max_m_s2: Positive = 3.0  # upwards and downwards; PX4 MPC_ACC_DOWN_MAX, of its own modes
-    jerk_max_m_s3: Positive = 20.0
-    vertical_jerk_max_m_s3: Positive = 20.0
+    speed_max_m_s: Speed = 30.0  # drag, 0.17 1/s by mass, takes half of a 45 degree tilt then
+    climb_max_m_s: Speed = 3.0  # PX4 MPC_Z_VEL_MAX_UP
+    descent_max_m_s: Speed = 1.5  # PX4 MPC_Z_VEL_MAX_DN
+    acceleration_max_m_s2: Acceleration = 5.0
+    vertical_acceleration_max_m_s2: Acceleration = 3.0  # upwards and downwards; PX4 MPC_ACC_DOWN_MAX, of its own modes
+    jerk_max_m_s3: Jerk = 20.0
+    vertical_jerk_max_m_s3: Jerk = 20.0
     range_max_m: Positive = 2000.0  # from the waiting point, where an abort begins; it ends v^2 / 4 + 2 v farther
     landing_time_s: Positive = 15.0  # from the chase's beginning to the pad, for the way that takes
     battery_min_share: Annotated[float, Field(ge=0.0, lt=1.0)] = 0.2  # below this no landing is begun
