@@ -48,7 +48,7 @@ def _sentence(details: ErrorDetails, location: Location, fields: Fields, model: 
     if details["type"] == "extra_forbidden":
         return f"unknown key '{key}'{key_hint(key, list(fields), model)}"
     if details["type"] == "missing" and isinstance(location[-1], int):
-        return f"{_key(location[:-1])} is too short: it must have more than {location[-1]} values"
+        return f"{_key(location[:-1])} is too short: it must have {location[-1] + 1} values or more"
     if details["type"] == "missing":
         return f"key '{key}' is missing"
     if details["type"] == "model_type" and location:
@@ -76,7 +76,7 @@ def _cut(text: str, length: int) -> str:
 
 
 def _lower_first(message: str) -> str:
-    plain = own_words(message)
+    plain = own_words(message).replace("Input should", "it must", 1)
     return plain[:1].lower() + plain[1:]
 
 

@@ -103,9 +103,9 @@ def test_merging_leaves_what_it_merges_alone() -> None:
         ),
         ("[guidance]\nhorizon_s = nan", "guidance.horizon_s = NaN does not fit"),
         ("[guidance.solver]\niterations_max = 2.5", "guidance.solver.iterations_max = 2.5 does not fit"),
-        ("fast = 1", "fast = 1 does not fit: input should be a valid boolean"),
-        ("[guidance]\nkind = 'pm'", "guidance.kind = \"pm\" does not fit: input should be 'mpc' or 'pn'"),
-        ("[guidance]\noffset_m = [1.0, 2.0]", "guidance.offset_m is too short: it must have more than 2 values"),
+        ("fast = 1", "fast = 1 does not fit: it must be a valid boolean"),
+        ("[guidance]\nkind = 'pm'", "guidance.kind = \"pm\" does not fit: it must be 'mpc' or 'pn'"),
+        ("[guidance]\noffset_m = [1.0, 2.0]", "guidance.offset_m is too short: it must have 3 values or more"),
         ("guidance = 3", "guidance = 3 does not fit: it is a table, whose keys are set one by one"),
         ("name = ", "not valid TOML"),
     ],
@@ -132,9 +132,9 @@ class Trip(StrictModel):
 @pytest.mark.parametrize(
     ("wrong", "expected"),
     [
-        (-3.5, "legs.speeds_m_s[1234] = -3.5 does not fit: input should be greater than or equal to 0"),
+        (-3.5, "legs.speeds_m_s[1234] = -3.5 does not fit: it must be greater than or equal to 0"),
         (0.0, "legs does not fit: speeds_m_s[1234] must not be 0"),
-        ("1" * 500, f'legs.speeds_m_s[1234] = "{"1" * 36}... does not fit: input should be a valid number'),
+        ("1" * 500, f'legs.speeds_m_s[1234] = "{"1" * 36}... does not fit: it must be a valid number'),
     ],
 )
 def test_one_bad_number_in_a_long_list_is_told_by_its_place_in_one_short_line(wrong: object, expected: str) -> None:
@@ -187,7 +187,7 @@ def test_a_mistake_in_a_table_of_some_kind_is_named_as_it_stands_in_the_file(
 
 
 def test_a_file_that_holds_no_table_is_told_so() -> None:
-    with pytest.raises(UserError, match=r"^x.json: it does not fit: input should be an object$"):
+    with pytest.raises(UserError, match=r"^x.json: it does not fit: it must be an object$"):
         validate(Config, [], source="x.json")  # type: ignore[arg-type]  # as JSON may hold it
 
 
