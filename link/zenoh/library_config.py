@@ -158,8 +158,9 @@ def _check_tls_files(config: zenoh.Config, config_file: Path | None) -> None:
         try:
             Path(path).read_bytes()
         except (OSError, ValueError) as error:
+            why = error.strerror if isinstance(error, OSError) else error
             raise UserError(
-                f"--zenoh-config {config_file}: {name}: {path} cannot be read ({error}); name the file that "
+                f"--zenoh-config {config_file}: {name}: {path} cannot be read ({why}); name the file that "
                 "there is, and let the user that runs the program read it"
             ) from error
 

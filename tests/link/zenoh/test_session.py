@@ -364,7 +364,9 @@ def test_a_key_or_certificate_that_cannot_be_read_is_told_by_its_name(tmp_path: 
     ends = "listen: { endpoints: ['tls/127.0.0.1:0'] }, connect: { endpoints: ['tls/127.0.0.1:1'] }"
     keys = f"transport: {{ link: {{ tls: {{ {name}: '{tmp_path}/none.pem' }} }} }}"
     path.write_text(f"{{ {ends}, {keys} }}", encoding="utf-8")
-    with pytest.raises(UserError, match=rf"{name}: {tmp_path}/none\.pem cannot be read"):
+    with pytest.raises(
+        UserError, match=rf"{name}: {tmp_path}/none\.pem cannot be read \(No such file or directory\); "
+    ):
         open_session(ZenohOptions(config_file=path))
 
 
