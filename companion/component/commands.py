@@ -1,9 +1,8 @@
 """Commands for the companion from ground stations and scripts, and their acknowledgements, without I/O.
 
 MAV_CMD_USER_1 starts a landing, USER_2 holds it, USER_3 aborts it; USER_4 launches from the vehicle, USER_5 calls home
-to it. A start is acknowledged as in progress with its
-percentage, once a second and with each phase, until it has ended. Each has to name the component: nothing that a ground
-station sends to all components does any of it.
+to it. A start is acknowledged as in progress with its percentage, once a second and with each phase, until it has
+ended. Each command has to name the component: what a ground station sends to all components does none of this.
 Source: MAVLink command protocol, https://mavlink.io/en/services/command.html.
 """
 

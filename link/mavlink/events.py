@@ -52,8 +52,6 @@ class CommandAcknowledged(Struct, frozen=True, kw_only=True):
     Attributes:
         command: MAV_CMD.
         result: MAV_RESULT.
-        progress: percent while in progress, 255 when not said.
-        result_param2: further detail, by command.
         ticket: what `command` returned; None when we have not sent this command.
         is_repeat: the command had already been answered, or doubled on its way.
     """
@@ -61,8 +59,6 @@ class CommandAcknowledged(Struct, frozen=True, kw_only=True):
     t_ns: int
     command: int
     result: int
-    progress: int
-    result_param2: int
     ticket: int | None
     is_repeat: bool
 

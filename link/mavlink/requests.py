@@ -99,8 +99,6 @@ class CommandSender:
             t_ns=t_ns,
             command=message.command,
             result=message.result,
-            progress=message.progress,
-            result_param2=message.result_param2,
             ticket=pending.ticket if pending is not None else self._last_ticket.get(message.command),
             is_repeat=pending is None,
         )

@@ -30,7 +30,6 @@ class Health:
         self._lost_ns = t_ns - _LOST_NS
         self._waiting_since_ns = t_ns
         self._heard_ns = t_ns
-        self._fix_ns: int | None = None
         self._told: str | None = "nothing yet"
         self._told_ns = t_ns
 
@@ -61,7 +60,7 @@ class Health:
         if heard:
             self._heard_ns = t_ns
         if has_fix:
-            self._fix_ns = self._waiting_since_ns = t_ns
+            self._waiting_since_ns = t_ns
             return self._said(None, f"fixes from {self._device}", t_ns)
         if t_ns - self._waiting_since_ns < _PATIENCE_NS:
             return None

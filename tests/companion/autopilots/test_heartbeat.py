@@ -20,9 +20,7 @@ def beat(*, armed: bool) -> Message:
 
 
 def answer(result: int) -> CommandAcknowledged:
-    return CommandAcknowledged(
-        t_ns=0, command=DISARM, result=result, progress=255, result_param2=0, ticket=1, is_repeat=False
-    )
+    return CommandAcknowledged(t_ns=0, command=DISARM, result=result, ticket=1, is_repeat=False)
 
 
 def after(*told: bool, view: AutopilotView = NO_AUTOPILOT) -> AutopilotView:
