@@ -18,6 +18,8 @@ _LINE_MAX = 200  # characters of what is said about one mistake
 _MISTAKES_MAX = 3  # told of one file, the others are counted
 _SOURCE_MAX, _VALUE_MAX = 100, 40  # of them, for the file's name and for a value
 _CUT = "..."
+_QUOTE = "'"
+_TABLES = frozenset({"model_type", "dict_type"})  # of what pydantic says where a table is to be
 _BOUNDS = {"gt": "above", "ge": "at least", "lt": "below", "le": "at most"}
 
 
@@ -47,16 +49,44 @@ def _sentence(details: ErrorDetails, location: Location, fields: Fields, model: 
     key = _key(location)
     if details["type"] == "extra_forbidden":
         return f"unknown key '{key}'{key_hint(key, list(fields), model)}"
-    if details["type"] == "missing" and isinstance(location[-1], int):
-        return f"{_key(location[:-1])} is too short: it must have {location[-1] + 1} values or more"
-    if details["type"] == "missing":
-        return f"key '{key}' is missing"
-    if details["type"] == "model_type" and location:
-        return f"{_describe_value(key, details['input'])} does not fit: it is a table, whose keys are set one by one"
+    shape = _wrong_shape(details, location)
+    return shape or f"{_describe_value(key, details['input'])} does not fit: {_expected(details, location, fields)}"
+
+
+def _wrong_shape(details: ErrorDetails, location: Location) -> str:
+    """Return what a table or a list lacks or has too much of, empty for a value that does not fit."""
+    key, limits, told = _key(location), details.get("ctx", {}), ""
+    match details["type"]:
+        case "missing" if isinstance(location[-1], int):
+            told = f"{_key(location[:-1])} is too short: it must have {location[-1] + 1} values or more"
+        case "missing":
+            told = f"key '{key}' is missing"
+        case "too_short":
+            told = f"{key} is too short: it must have {limits['min_length']} values or more"
+        case "too_long":
+            told = f"{key} is too long: it must have {limits['max_length']} values or fewer"
+        case "union_tag_not_found":
+            told = f"key '{_kind_key(key, limits)}' is missing"
+        case "union_tag_invalid":
+            value = _describe_value(_kind_key(key, limits), limits["tag"])
+            told = f"{value} does not fit: it must be one of {limits['expected_tags']}"
+        case _:
+            pass
+    return told
+
+
+def _kind_key(key: str, limits: Mapping[str, str]) -> str:
+    """Return the key of a table that says of which kind it is, whose name pydantic tells in quotes."""
+    return f"{key}.{limits['discriminator'].strip(_QUOTE)}"
+
+
+def _expected(details: ErrorDetails, location: Location, fields: Fields) -> str:
+    """Return what would fit in place of a value."""
+    if details["type"] in _TABLES and location:
+        return "it is a table, whose keys are set one by one"
     field = fields.get(str(location[-1])) if location else None
     is_ours = details["type"] == "value_error"  # a check of the model's own, beyond the range of one number
-    expected = ("" if is_ours or field is None else _range_of(field)) or _lower_first(details["msg"])
-    return f"{_describe_value(key, details['input'])} does not fit: {expected}"
+    return ("" if is_ours or field is None else _range_of(field)) or _lower_first(details["msg"])
 
 
 def _key(location: Location) -> str:

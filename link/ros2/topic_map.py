@@ -14,11 +14,13 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from link.program.toml_config import NotNegative, Positive, StrictModel
+from link.payloads.json_messages import Height, Lever, Rise, Size
+from link.program.toml_config import StrictModel
 
 VelocityType = Literal["geometry_msgs/msg/TwistWithCovarianceStamped", "geometry_msgs/msg/TwistStamped"]
 Name = Annotated[str, Field(pattern=r"^(/[A-Za-z_][A-Za-z0-9_]*)+$")]
-Degrees = Annotated[float, Field(ge=-180.0, le=180.0)]
+Latitude = Annotated[float, Field(ge=-90.0, le=90.0)]
+Longitude = Annotated[float, Field(ge=-180.0, le=180.0)]
 Geoid = Annotated[float, Field(ge=-120.0, le=120.0)]
 Metres = Annotated[float, Field(ge=-1000.0, le=10000.0)]
 
@@ -34,7 +36,7 @@ class VehicleTopics(StrictModel):
     gps_geoid_height_m: Geoid = 0.0  # added to its altitude: of the sea above the ellipsoid where it is above the sea
     odometry: Name | None = None  # nav_msgs/msg/Odometry, in place of the three
     odometry_frame: str = "map"  # its header's, with axes east, north and up
-    odometry_origin: tuple[Degrees, Degrees, Metres] | None = None  # of that frame: degrees, m above the ellipsoid
+    odometry_origin: tuple[Latitude, Longitude, Metres] | None = None  # of that frame: degrees, m above the ellipsoid
 
     @model_validator(mode="after")
     def _check_odometry(self) -> "VehicleTopics":
@@ -50,9 +52,9 @@ class VehicleTopics(StrictModel):
 class PadTopics(StrictModel):
     """The pad, where the vehicle does not describe it itself as `ground-vehicle` does."""
 
-    size_m: tuple[Positive, Positive]
-    height_m: NotNegative  # above the road
-    antenna_to_pad_m: tuple[float, float, float] | None = None  # forward, left, up; None: from the transforms
+    size_m: tuple[Size, Size]
+    height_m: Height  # above the road
+    antenna_to_pad_m: tuple[Lever, Lever, Rise] | None = None  # forward, left, up; None: from the transforms
     tf_static: Name = "/tf_static"
     vehicle_frame: str = "base_link"
     antenna_frame: str = "base_link"  # where a fix, or the odometry, is

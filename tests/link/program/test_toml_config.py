@@ -106,6 +106,10 @@ def test_merging_leaves_what_it_merges_alone() -> None:
         ("fast = 1", "fast = 1 does not fit: it must be a valid boolean"),
         ("[guidance]\nkind = 'pm'", "guidance.kind = \"pm\" does not fit: it must be 'mpc' or 'pn'"),
         ("[guidance]\noffset_m = [1.0, 2.0]", "guidance.offset_m is too short: it must have 3 values or more"),
+        (
+            "[guidance]\noffset_m = [1.0, 2.0, 3.0, 4.0]",
+            "guidance.offset_m is too long: it must have 3 values or fewer",
+        ),
         ("guidance = 3", "guidance = 3 does not fit: it is a table, whose keys are set one by one"),
         ("name = ", "not valid TOML"),
     ],
@@ -115,7 +119,7 @@ def test_a_mistake_is_named_with_its_key_and_what_would_fit(tmp_path: Path, text
 
 
 class Legs(StrictModel):
-    speeds_m_s: tuple[Annotated[float, Field(ge=0.0)], ...]
+    speeds_m_s: Annotated[tuple[Annotated[float, Field(ge=0.0)], ...], Field(min_length=2)]
 
     @model_validator(mode="after")
     def _does_not_stand(self) -> Self:
@@ -184,6 +188,25 @@ def test_a_mistake_in_a_table_of_some_kind_is_named_as_it_stands_in_the_file(
     with pytest.raises(UserError) as caught:
         validate(Drive, {"track": {"kind": "circle"} | values}, source="x.toml")
     assert str(caught.value) == f"x.toml: {expected}"
+
+
+@pytest.mark.parametrize(
+    ("track", "expected"),
+    [
+        ({"kind": "spiral"}, "track.kind = \"spiral\" does not fit: it must be one of 'road', 'circle'"),
+        ({"radius_m": 2.0}, "key 'track.kind' is missing"),
+        (3, "track = 3 does not fit: it is a table, whose keys are set one by one"),
+    ],
+)
+def test_a_table_of_no_kind_is_named_with_the_kinds_there_are(track: object, expected: str) -> None:
+    with pytest.raises(UserError) as caught:
+        validate(Drive, {"track": track}, source="x.toml")
+    assert str(caught.value) == f"x.toml: {expected}"
+
+
+def test_a_list_that_is_too_short_is_told_how_many_values_it_needs() -> None:
+    with pytest.raises(UserError, match=r"^x.toml: legs.speeds_m_s is too short: it must have 2 values or more$"):
+        validate(Trip, {"legs": {"speeds_m_s": [1.0]}}, source="x.toml")
 
 
 def test_a_file_that_holds_no_table_is_told_so() -> None:
