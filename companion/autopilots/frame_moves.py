@@ -32,8 +32,8 @@ class FrameMoves(Struct, frozen=True, kw_only=True):
     Attributes:
         origin_count: how often the origin was set, or moved by other than the drone's own place had stepped before.
         shift_enu_m: sum of the steps of the drone's own place that it did not fly.
-        shift_variance_m2: of that sum on each axis.
-        stepped_ns: the first report after the newest of them; 0 before the first.
+        shift_variance_m2: of `shift_enu_m`, on each axis.
+        stepped_ns: time of the first report after the newest step; 0 before the first.
         since_origin_enu_m: sum of the steps since the origin was set or moved last.
         origin_shift_enu_m: by how much what stands on the ground has moved in W with such steps.
     """

@@ -96,8 +96,8 @@ class DetectorFacts:
 
     Attributes:
         is_alive: `pad-detector` shows that it runs, whether it sees the pad or not.
-        sightings: that came.
-        rate_hz: of them.
+        sightings: how many came.
+        rate_hz: of the sightings.
         age_s: median from the picture to the sighting's arrival.
         std_m: median of the largest standard deviation of any axis.
         refused_why: what was wrong with the last one that was refused, None where none was.

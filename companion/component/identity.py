@@ -48,7 +48,7 @@ class ComputerLoad(Struct, frozen=True, kw_only=True):
     Attributes:
         cores_percent: how busy each core is.
         ram_used_mib: mebibytes.
-        ram_total_mib: likewise.
+        ram_total_mib: mebibytes.
         uptime_ms: since it was started.
         temperature_c: of its processor, None where it does not tell.
     """

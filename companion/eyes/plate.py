@@ -75,7 +75,7 @@ def _coverage(begin: float, length: float, cells: int, count: int) -> tuple[int,
 
     Args:
         begin: of the row, in pixels.
-        length: likewise.
+        length: of the row, in pixels.
         cells: that it has.
         count: pixels that there are; what is beyond them is left out.
     """

@@ -31,7 +31,7 @@ def believe(path: Array, at: int, left: tuple[float, float], drone: Follower, kn
     Args:
         path: (b + m, 3, 2) of the vehicle.
         at: where on it the vehicle was of which the newest datum tells.
-        left: of it, a unit vector.
+        left: unit vector to the vehicle's left.
         drone: with how what is new is believed.
         known: (3, 2) of the step before.
     """

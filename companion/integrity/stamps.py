@@ -1,10 +1,10 @@
 """Whether the vehicle's fixes come from the future, and whether their stamps have stepped; pure.
 
-A fix is as old when it comes as the link was slow and the two clocks differ. A link has its quick and its slow moments.
-A clock that was set, the vehicle's or the one that the autopilot's UTC comes from, makes each fix by as much older or
-younger: all of the last second, and the last four, are then older than any of the seconds before, or younger. The pad
-is believed elsewhere on the vehicle's way, and nobody knows which of the two times was right. A link that became slower
-makes them older, too, but puts no fix elsewhere on that way.
+The age of a fix, as it comes, is the link's delay plus the difference of the two clocks. The delay changes from fix to
+fix. When a clock is set, the vehicle's or the one that the autopilot's UTC comes from, all later fixes are older, or
+younger, by as much. It shows once all fixes of the last second, four at least, are older than any of the seconds
+before, or all are younger. The pad is then believed elsewhere on the vehicle's way, and nobody knows which of the two
+times was right. A link that became slower makes fixes older, too, but puts none of them elsewhere on that way.
 """
 
 from typing import NamedTuple
@@ -31,8 +31,8 @@ class Arrival(NamedTuple):
     """A fix as it came.
 
     Attributes:
-        at_ns: when, monotonic.
-        age_s: of it then.
+        at_ns: when it came, monotonic.
+        age_s: how old it was then, by its stamp.
         ahead_s: of where it was expected on the vehicle's way, as `WayError` has it; None where that is not known.
     """
 
@@ -49,12 +49,12 @@ class FixStamps(Struct, frozen=True, kw_only=True):
     """The newest accepted fix, and how old those of the last seconds were when they came.
 
     Attributes:
-        newest_ns: when it was taken, by its own stamp; None before the first.
-        age_on_arrival_s: of it, or of a newer refused one, when it came; never negative where both clocks are right.
-        ages: of those of the last seconds, or of those before a step.
-        recent: of the newest ones, after a step.
-        stepped_s: by which the fixes are older than before since a clock was set, or negative; 0 where none was.
-        stepped_ns: when that was found, monotonic.
+        newest_ns: when the newest accepted fix was taken, by its own stamp; None before the first.
+        age_on_arrival_s: of that fix, or of a newer refused one, when it came; not negative if both clocks are right.
+        ages: the fixes of the last seconds; after a step, those before it.
+        recent: the newest fixes, after a step; empty where there was none.
+        stepped_s: by how much fixes are older since a clock was set, negative if younger; 0 where none was set.
+        stepped_ns: when the step was found, monotonic.
     """
 
     newest_ns: int | None = None
@@ -103,8 +103,8 @@ def is_step_of_stamps(stamps: FixStamps, age_s: float, way: WayError | None) -> 
 
     Args:
         stamps: before it.
-        age_s: of it as it came.
-        way: how it differs from what was expected.
+        age_s: of the fix as it came.
+        way: how the fix differs from what was expected.
     """
     if way is None or stamps.age_on_arrival_s is None:
         return False

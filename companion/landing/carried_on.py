@@ -180,7 +180,7 @@ def bound_sink(
 
     Args:
         climb_m_s: of the path, upwards.
-        acceleration_m_s2: likewise.
+        acceleration_m_s2: of the path, upwards.
         room_m: by which it may end lower at most; if that cannot be, it ends as high as it can.
         shaping: of the path.
     """

@@ -77,7 +77,7 @@ def guiding_message(outputs: StepOutputs, inputs: StepInputs, config: CompanionC
 
     Args:
         outputs: of the step.
-        inputs: likewise.
+        inputs: of the step.
         config: all numbers.
         local_ns: now, on the companion's own clock.
     """

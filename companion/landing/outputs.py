@@ -34,7 +34,7 @@ def setpoint(
     Args:
         memory: after this step's plan.
         inputs: of this step.
-        situation: likewise.
+        situation: of this step.
         config: all numbers.
         is_planned: whether this step has planned; there may be nothing to plan.
     """
@@ -184,7 +184,7 @@ def plan_publication(keys: Keys, way: Trajectory, t_ns: int, yaw_rad: float) -> 
     Args:
         keys: of the Zenoh contract.
         way: planned by a step, its offsets from `t_ns`.
-        t_ns: of that step, UTC.
+        t_ns: of the step that planned it, UTC.
         yaw_rad: the heading that is flown, from East counter-clockwise.
     """
     offsets_s = way.offset_s[::_PLAN_POINTS].tolist()

@@ -113,7 +113,7 @@ def slopes_of(level: Array, upright: Array, x: Array, reference: Array, jerk: Ar
 
     Args:
         level: weights of the horizontal axes, as `AxisCost` has them.
-        upright: likewise of the vertical one.
+        upright: weights of the vertical axis.
         x: (3, 3) the state: position, velocity, acceleration; axis.
         reference: (3, 3, n) of position, velocity, acceleration; axis; node.
         jerk: (3, m) the reference of the moves.

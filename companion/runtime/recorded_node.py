@@ -48,7 +48,8 @@ class RecordingNode(CompanionNode):
         session: to the autopilot.
         recorder: takes the records.
         dry_run: send neither setpoints nor commands.
-        publishes: as there.
+        publishes: put status and plan on Zenoh.
+        is_component: hear ground stations.
     """
 
     def __init__(

@@ -53,8 +53,8 @@ class BodySway(Struct, frozen=True, kw_only=True):
     Attributes:
         heave: of the pad.
         roll: of the body.
-        pitch: likewise.
-        seen_s: for how long they were watched, what is longer ago counting less.
+        pitch: of the body.
+        seen_s: for how long all three were watched; what is longer ago counts less.
         antenna: how much it goes to and fro.
     """
 

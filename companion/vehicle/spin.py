@@ -69,7 +69,7 @@ def compared(spin: Spin, heading_rad: float, variance_rad2: float) -> Spin:
     Args:
         spin: so far.
         heading_rad: as told.
-        variance_rad2: of it.
+        variance_rad2: of the heading.
     """
     shows_rad = _STDS * math.sqrt(2.0 * variance_rad2)
     if spin.heading_rad is None:

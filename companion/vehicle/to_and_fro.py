@@ -47,8 +47,8 @@ class ToAndFro(Struct, frozen=True, kw_only=True, eq=False):
         squares: (m, 1 + 3 k) of the sway's velocity in the last seconds, m^2/s^2, newest first: the time, along the
             course by each of k periods, across it and up; NaN of a period for which too little was told.
         along: what is shown along the course.
-        across: likewise.
-        up: likewise.
+        across: what is shown across the course.
+        up: what is shown upwards.
     """
 
     now_s: float = 0.0

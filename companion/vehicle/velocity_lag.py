@@ -41,11 +41,11 @@ class VelocityLag(Struct, frozen=True, kw_only=True):
 
     Attributes:
         places: of the last seconds, oldest first.
-        velocities: likewise.
+        velocities: of the last seconds, oldest first.
         information_per_s2: sum of the squared accelerations over the variances.
-        product_per_s: sum of acceleration times difference over them.
-        squares: sum of the squared differences over them.
-        windows: how many.
+        product_per_s: sum of acceleration times difference over the variances.
+        squares: sum of the squared differences over the variances.
+        windows: how many differences these sums are of.
         is_known: it was above its least and its error once; then it counts as it is.
     """
 

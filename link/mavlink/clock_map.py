@@ -53,14 +53,14 @@ class ClockMap(Struct, frozen=True, kw_only=True):
     """What is known of the three clocks; empty as constructed.
 
     Attributes:
-        round_trips: those that the maps are made of.
-        system_times: likewise.
+        round_trips: those that `local_to_boot` is made of.
+        system_times: those that `boot_to_utc` is made of.
         local_to_boot: None before the first round trip.
         boot_to_utc: None before the first SYSTEM_TIME.
         one_way_s: how long a message is under way: half the median round trip, 0 while there was none.
-        one_way_std_s: standard deviation of that, when both ways are as unsteady as each other; 0 while it is unknown.
+        one_way_std_s: standard deviation of `one_way_s` if both ways are equally unsteady; 0 while it is unknown.
         doubted_trips: the newest, which tell of a step of the boot clock; not fitted yet.
-        doubted_times: likewise, of UTC.
+        doubted_times: the newest, which tell of a step of UTC; not fitted yet.
     """
 
     round_trips: tuple[RoundTrip, ...] = ()

@@ -60,7 +60,7 @@ class MavlinkCodec:
 
     Args:
         system_id: of the sender of what is encoded.
-        component_id: likewise.
+        component_id: of the sender of what is encoded.
         records_input: keep each frame received for `take_input`, unknown ones included.
         signing: signs what is encoded and refuses what is not signed rightly; None for links without a key.
         answers_version1: encode MAVLink 1 as long as nothing else was received.

@@ -30,7 +30,7 @@ def fix_of_odometry(payload: bytes, frame: str, origin: Datum) -> Fix:
     Args:
         payload: a nav_msgs/msg/Odometry in CDR.
         frame: that its pose must be in, with axes ENU.
-        origin: of that frame.
+        origin: of `frame`.
     """
     message = _odometry(payload, frame)
     latitude_rad, longitude_rad, altitude_m = geodetic_from_enu(

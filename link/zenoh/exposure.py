@@ -64,11 +64,11 @@ def openings_of(
     """Return by what strangers could take part, as `check_exposure` refuses it, and where no rule says who may do what.
 
     Args:
-        connect: as there.
-        listen: as there.
-        protocols: as there.
-        is_mutual: as there.
-        scouts: as there.
+        connect: endpoints to connect to.
+        listen: endpoints to listen on.
+        protocols: that the session speaks at all, None for every one.
+        is_mutual: whether who connects by TLS is asked for a certificate.
+        scouts: whether others are looked for by multicast.
         has_rules: whether access control is on.
     """
     open_ends = [*exposed(connect), *exposed(listen, is_mutual=is_mutual)]

@@ -87,8 +87,8 @@ class ZenohSession:
         Args:
             key: of the samples.
             capacity: of the inbox, in samples.
-            bytes_max: likewise.
-            sample_bytes_max: of one; a larger one comes as an empty one, which its reader counts as bad.
+            bytes_max: capacity of the inbox, in bytes; None for its default.
+            sample_bytes_max: of one sample; a larger one comes as an empty one, which its reader counts as bad.
         """
         inbox = Inbox(capacity=capacity, wake_up=self.wake_up, bytes_max=bytes_max)
         self._fill(inbox, key, sample_bytes_max)

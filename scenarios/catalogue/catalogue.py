@@ -2,9 +2,8 @@
 
 A name is a track and its speed rounded down (`straight_5`), perhaps with presets (`straight_5+sensors=nominal`).
 A file of one's own has the same keys, perhaps with presets behind its name as well (`own.toml+firmware=px4`); `base`
-names a scenario to start from. A section is a preset's name, or a
-table of values, in which `preset` names what the values change. A world of `scenarios.worlds` has a name too
-(`world:urban@123`).
+names a scenario to start from. A section is a preset's name, or a table of values, in which `preset` names what the
+values change. A world of `scenarios.worlds` has a name too (`world:urban@123`).
 """
 
 import difflib

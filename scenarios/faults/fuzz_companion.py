@@ -61,10 +61,10 @@ class CompanionFuzzResult:
         link: its kind.
         firmware: of the autopilot.
         forges: whether frames said to be the autopilot's, and payloads the vehicle's.
-        frames: offered.
-        payloads: likewise, on the keys that the companion hears.
-        flights: flown.
-        landed: of these.
+        frames: how many were offered.
+        payloads: how many were offered, on the keys that the companion hears.
+        flights: how many were flown.
+        landed: how many of the flights landed.
         not_finite: numbers sent that are none.
         latest_s: how old the newest that the companion knew of the drone was, at most.
         frames_a_second: offered, taken and flown over.

@@ -3,8 +3,8 @@
 A population of landings is flown. Its better half is dropped, each place taken by a copy of one of the worse half,
 and each copy makes a chain of steps that stays worse than the level (`chain.py`): by turns its noise is moved as a
 whole, which reaches other worlds, and redrawn from an instant on, which leaves what led to a bad situation and
-changes what comes of it. With S_l of N landings worse than
-level l, and M unsafe at the end, the probability is estimated as
+changes what comes of it. With S_l of N landings worse than level l, and M unsafe at the end, the probability is
+estimated as
 
     p = (S_1 / N) (S_2 / N) ... (M / N)
 

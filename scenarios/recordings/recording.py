@@ -26,7 +26,7 @@ class Recording:
         rotors: of the drone.
         statuses: of the companion, as published.
         estimate_errors: of the companion's estimate of the vehicle, known in lockstep only.
-        nis: likewise.
+        nis: of the companion's measurements of the vehicle, known in lockstep only.
     """
 
     drone: list[BodyTruth] = field(default_factory=list)

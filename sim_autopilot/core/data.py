@@ -93,7 +93,7 @@ class Reference(Struct, frozen=True, kw_only=True, eq=False):
         yaw_rate_rad_s: None is zero.
         attitude: in place of everything above.
         free_position: axes of W on which the position is nobody's wish, and follows the drone.
-        free_velocity: likewise of the velocity.
+        free_velocity: axes of W on which the velocity is nobody's wish, and follows the drone's.
     """
 
     position_enu_m: Array | None

@@ -120,9 +120,9 @@ class SensorFlags:
     """The SYS_STATUS bit masks: sensors present, enabled, healthy.
 
     Attributes:
-        present: all of them.
-        enabled: likewise.
-        health: of those that work from the start.
+        present: the sensors that there are.
+        enabled: the sensors that are used.
+        health: the sensors that work from the start.
         fix_health: added with a GPS fix.
         arming_health: added once it says that it can arm, `arming_s` after boot.
         arming_s: which is not when it does.

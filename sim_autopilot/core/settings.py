@@ -22,9 +22,9 @@ class FailsafeSettings:
 
     Attributes:
         battery_levels: remaining shares at which the battery is low, critical and in an emergency, falling.
-        battery_events: what each of them leads to.
+        battery_events: what each of these levels leads to.
         station_lost_s: silence after which the ground station is lost.
-        station_event: what that leads to in the end.
+        station_event: what a lost ground station leads to in the end.
         station_system: whose heartbeats count; None takes those of every ground station.
         station_spares: modes in which a lost ground station changes nothing.
         hold_s: how long it holds before that; None not at all.

@@ -40,14 +40,14 @@ class GroundStation:
 
     Attributes:
         files: that it shows over MAVLink FTP, by its parameters and their values.
-        ftp: of that server.
+        ftp: rules of the FTP server.
         logs: of flights.
         plans: of the mission protocol.
         messages: what else is handled, by message id.
         commands: by MAV_CMD; a handler may leave one to the flight, by None.
         fixed_answers: the MAV_RESULT of commands that change nothing here, None for no answer, by MAV_CMD.
         streams: messages that it can send besides the flight's.
-        builders: of these.
+        builders: of the messages in `streams`.
     """
 
     files: Callable[[tuple[Parameter, ...], Values], Shown]

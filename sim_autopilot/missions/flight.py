@@ -57,7 +57,7 @@ class Progress:
 
     Attributes:
         index: of the current item.
-        stage: of it.
+        stage: of the current item.
         staying_ns: since when it stays there, in ns since boot.
         speed_m_s: that the mission has asked for.
         jumps: how often each DO_JUMP was obeyed.

@@ -28,7 +28,7 @@ class OwnStateModel:
         seed: of the errors, or the generator that draws them.
         position_std_m: zero is the truth.
         height_std_m: of the height, None where it is as good as the rest of the position.
-        velocity_std_m_s: likewise.
+        velocity_std_m_s: zero is the truth.
         receiver_accuracy_m: that its receiver states, None for what the firmware's own simulator says.
         position_time_s: T.
         velocity_time_s: T.

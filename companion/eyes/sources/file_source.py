@@ -21,7 +21,7 @@ class FolderSource:
     Args:
         folder: of the pictures.
         start_ns: time of the first one, where names tell none.
-        rate_hz: of those.
+        rate_hz: of the pictures, where names tell no time.
         latency_s: by which the times in names are late.
 
     Raises:

@@ -172,7 +172,7 @@ class ForecastMemory(Struct, frozen=True, kw_only=True, eq=False):
         risk: that a contact is unsafe if it comes to one, a mean of the last forecasts; None while that is not seen.
         has_begun: this descent has left the height of waiting at a quiet moment; it holds until the descent ends.
         acceleration_ns: when the vehicle last told its acceleration, monotonic; None if it never did.
-        turning_ns: likewise its heading, or how fast it turns.
+        turning_ns: when it last told its heading, or how fast it turns, monotonic; None if it never did.
     """
 
     contact: ContactForecast | None = None

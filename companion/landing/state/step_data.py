@@ -25,8 +25,8 @@ class LinkDelay(Struct, frozen=True, kw_only=True):
     """How long a message takes, by how much that differs from one to the next, and how long none may have come.
 
     Attributes:
-        mean_s: on its way.
-        std_s: of that.
+        mean_s: mean time that a message is on its way.
+        std_s: standard deviation of that time.
         unanswered_s: since the newest question was asked that the autopilot has answered.
     """
 
