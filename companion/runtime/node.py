@@ -1,7 +1,4 @@
-"""The companion without I/O: bytes and payloads in, bytes and payloads out, on any clock.
-
-The wire loop, the lockstep campaigns and the tests all run this one.
-"""
+"""The companion without I/O, on any clock: bytes and payloads in and out. Flights, campaigns and tests run this one."""
 
 from companion.autopilots.link import AutopilotLink
 from companion.autopilots.messages import may_turn
@@ -13,7 +10,7 @@ from companion.landing.guiding import guiding_message
 from companion.landing.state.memory import StepMemory
 from companion.landing.state.step_data import StepInputs, StepOutputs, System
 from companion.landing.steering.virtual_model import response_to
-from companion.runtime.link_delay import link_delay
+from companion.runtime.link_delay import link_delay, may_touch
 from companion.runtime.publishing import StatusPublisher, with_links
 from companion.runtime.step_clock import StepClock
 from companion.runtime.step_commands import StepCommands, refuse_motors_off
@@ -217,10 +214,11 @@ class CompanionNode:
             station=station,
             leaving=self._leaving,
             shaping=self.autopilot.shaping if kept is None else kept.shaping,
-            link_delay=link_delay(way, local_ns),
+            link_delay=link_delay(self.autopilot.session.clock_sync, local_ns),
         )
         self.inputs = inputs
         self.memory, self.outputs = companion_step(self.memory, inputs, self.system)
+        self.autopilot.session.clock_sync.asks_often = may_touch(self.outputs.status, self.system.config)
         self._send(inputs, self.outputs, local_ns)
 
     def _start_refusal(self, switched: Command | None) -> CommandReply | None:

@@ -77,12 +77,6 @@ class ClockMap(Struct, frozen=True, kw_only=True):
         """Whether UTC comes from the autopilot; otherwise local time stands for it."""
         return self.boot_to_utc is not None
 
-    @property
-    def answered_ns(self) -> int | None:
-        """Local time at which the newest question that was answered had been asked, None before the first answer."""
-        trips = self.doubted_trips or self.round_trips
-        return trips[-1].sent_ns if trips else None
-
     def local_to_boot_ns(self, local_ns: int) -> int | None:
         """Boot time at a local time, None before the first round trip."""
         return None if self.local_to_boot is None else self.local_to_boot.y_ns(local_ns)

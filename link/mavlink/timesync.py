@@ -12,6 +12,7 @@ from link.mavlink.timer import Timer
 _FAST_PERIOD_NS = 100_000_000
 _FAST_COUNT = 20  # so many are asked so quickly at first, 2 s worth
 _PERIOD_NS = 500_000_000
+_OFTEN_PERIOD_NS = 20_000_000  # as often as setpoints are sent
 _CLOCK = ClockConfig()
 _MS_NS = 1_000_000
 _BOOT_TURN_NS = (1 << 32) * _MS_NS
@@ -59,29 +60,38 @@ class ClockSync:
 
     Attributes:
         takes_own_utc: UTC is what the local clock shows, not what SYSTEM_TIME tells.
+        clock: what is known of the clocks.
+        round_trips: answers used.
+        answered_ns: local time at which the newest question that was answered had been asked, None before the first.
+        asks_often: to know from instant to instant that the autopilot hears. Of these answers the clocks learn nothing.
     """
 
     def __init__(self) -> None:
         self.takes_own_utc = False
         self.clock = ClockMap()
         self.round_trips = 0
+        self.answered_ns: int | None = None
+        self.asks_often = False
+        self._often = Timer(_OFTEN_PERIOD_NS)
         self._timer = Timer(_FAST_PERIOD_NS)
         self._fast_left = _FAST_COUNT
-        self._asked_ns: dict[int, None] = {}
+        self._asked_ns: dict[int, bool] = {}  # and whether the clocks learn of it
         self.shared_id = SharedIdWatch()
         """Hears every TIMESYNC of the autopilot's address, those of a clock that is not followed as well."""
 
     def poll(self, t_ns: int) -> Message | None:
         """The next question, when it is time for one."""
-        if not self._timer.is_due(t_ns):
+        is_learned = self._timer.is_due(t_ns)
+        if not is_learned and not (self.asks_often and self._often.is_due(t_ns)):
             return None
-        self._fast_left -= 1
-        if self._fast_left == 0:
-            self._timer.period_ns = _PERIOD_NS
-        self._asked_ns[t_ns] = None
+        self._asked_ns[t_ns] = is_learned
         if len(self._asked_ns) > _ASKED_MAX:
             del self._asked_ns[next(iter(self._asked_ns))]
-        self.shared_id.ask(t_ns)
+        if is_learned:
+            self._fast_left -= 1
+            if self._fast_left == 0:
+                self._timer.period_ns = _PERIOD_NS
+            self.shared_id.ask(t_ns)
         return mavlink.MAVLink_timesync_message(tc1=0, ts1=t_ns)
 
     def hear(self, message: Message, t_ns: int) -> Message | None:
@@ -97,9 +107,10 @@ class ClockSync:
         if message.tc1 == 0:
             return mavlink.MAVLink_timesync_message(tc1=max(t_ns, 1), ts1=message.ts1)  # 0 would be a question
         if message.ts1 in self._asked_ns and _is_boot_time(message.tc1):
-            del self._asked_ns[message.ts1]
-            self.round_trips += 1
-            self.clock = with_round_trip(self.clock, RoundTrip(message.ts1, t_ns, message.tc1), _CLOCK)
+            self.answered_ns = max(message.ts1, self.answered_ns or message.ts1)
+            if self._asked_ns.pop(message.ts1):
+                self.round_trips += 1
+                self.clock = with_round_trip(self.clock, RoundTrip(message.ts1, t_ns, message.tc1), _CLOCK)
         return None
 
     def system_time(self, message: Message) -> None:
@@ -112,6 +123,7 @@ class ClockSync:
     def start_over(self) -> None:
         """Forgets everything, as after a restart; answers to earlier questions count no more."""
         self.clock = ClockMap()
+        self.answered_ns = None
         self._asked_ns.clear()
         self._fast_left = _FAST_COUNT
         self._timer = Timer(_FAST_PERIOD_NS)

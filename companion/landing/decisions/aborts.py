@@ -20,11 +20,11 @@ from companion.landing.decisions.conditions import (
     has_lost_heading,
     is_fix_old,
     is_heading_to_be_shown,
-    is_in_contact,
     is_sunk,
     is_vehicle_taken,
     tell_taken,
 )
+from companion.landing.decisions.contact_trial import is_in_contact
 from companion.situation.phases import LANDING_PHASES, NEAR_PHASES, Phase
 from companion.situation.situation import Approach, Situation
 from companion.vehicle.pad_reach import cone_radius_m, is_unseen, is_vague, over_pad_radius_m

@@ -14,8 +14,8 @@ from companion.landing.decisions.contact import (
 )
 from companion.landing.decisions.contact_signs import signs_of, signs_text
 from companion.landing.decisions.contact_trial import (
-    disputed_hold_s,
-    is_in_disputed_contact,
+    is_contact_tried,
+    is_disputed_contact_tried,
     is_trial_unheard,
     trial_hold_s,
 )
@@ -138,11 +138,6 @@ _DESCENT = frozenset({Phase.DESCEND})
 _STANDING = frozenset({Phase.TOUCHDOWN})
 
 
-def is_in_contact(s: Situation, c: CompanionConfig) -> bool:
-    """Return whether every sign of a contact agrees now, however short it has been."""
-    return verdict(signs_of(s, c.touchdown), c) is Verdict.CONTACT
-
-
 def _is_in_hard_contact(s: Situation, c: CompanionConfig) -> bool:
     """Return whether what was touched stops the drone: a moment later the pad may be gone."""
     jolt_m_s2 = None if s.drone is None else s.drone.jolt_m_s2
@@ -179,7 +174,7 @@ def is_sunk(s: Situation, c: CompanionConfig) -> bool:
 TOUCHED = Condition(
     reason=Reason.CONTACT,
     phases=_DESCENT,
-    is_true=is_in_contact,
+    is_true=is_contact_tried,
     hold_s=trial_hold_s,
     cause=lambda s, c: Cause(Reason.CONTACT, (signs_text(signs_of(s, c.touchdown)),)),
 )
@@ -188,8 +183,8 @@ TOUCHED = Condition(
 TOUCHED_BY_DISPUTE = Condition(
     reason=Reason.DISPUTED_CONTACT,
     phases=_DESCENT,
-    is_true=is_in_disputed_contact,
-    hold_s=disputed_hold_s,
+    is_true=is_disputed_contact_tried,
+    hold_s=lambda _, c: c.touchdown.range_finder.disputed_hold_s,
     cause=lambda s, c: Cause(Reason.DISPUTED_CONTACT, (signs_text(signs_of(s, c.touchdown)),)),
 )
 """All but the range finder's."""

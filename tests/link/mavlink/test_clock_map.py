@@ -60,14 +60,6 @@ def test_the_deviation_of_the_delay_is_that_of_one_way(jitter_s: float) -> None:
     assert ClockMap().one_way_std_s == 0.0
 
 
-def test_the_newest_answered_question_counts_though_its_answer_tells_of_a_step() -> None:
-    clock, t_ns = exchanged(0.0, (0.001, 0.001), 4.0, seed=1)
-    assert ClockMap().answered_ns is None
-    assert clock.answered_ns == t_ns - 500 * MS
-    stepped = with_round_trip(clock, RoundTrip(t_ns, t_ns + 2 * MS, boot_at(t_ns, 0.0) + 9 * S))
-    assert stepped.answered_ns == t_ns
-
-
 @pytest.mark.slow
 def test_the_stated_uncertainty_is_that_of_the_errors() -> None:
     shares = []

@@ -150,6 +150,20 @@ def test_answers_to_questions_from_before_a_restart_are_not_learned_from() -> No
     assert sync.clock.local_to_boot is None
 
 
+def test_questions_in_between_tell_that_the_autopilot_hears_and_nothing_of_the_clocks() -> None:
+    sync = ClockSync()
+    asked_ns = [t_ns for t_ns in range(START_NS, START_NS + 90 * MS, 5 * MS) if sync.poll(t_ns) is not None]
+    assert (asked_ns, ClockSync().answered_ns) == ([START_NS], None)
+    sync.asks_often = True
+    more_ns = [t_ns for t_ns in range(START_NS + 5 * MS, START_NS + 90 * MS, 5 * MS) if sync.poll(t_ns) is not None]
+    assert more_ns == [START_NS + ms * MS for ms in (5, 25, 45, 65, 85)]
+    sync.timesync(mavlink.MAVLink_timesync_message(tc1=BOOTED_NS, ts1=more_ns[1]), START_NS + 91 * MS)
+    sync.timesync(mavlink.MAVLink_timesync_message(tc1=BOOTED_NS, ts1=more_ns[0]), START_NS + 92 * MS)
+    assert sync.answered_ns == more_ns[1]
+    assert sync.clock.local_to_boot is None
+    assert sync.round_trips == 0
+
+
 def test_an_answer_in_unix_time_is_no_boot_time() -> None:
     sync = ClockSync()
     sync.poll(START_NS)

@@ -3,7 +3,7 @@
 import pytest
 
 from companion.core.reasons import Reason
-from companion.landing.decisions.conditions import MISSED, TOUCHED, TOUCHED_BY_DISPUTE
+from companion.landing.decisions.conditions import MISSED, TOUCHED, TOUCHED_BY_DISPUTE, Condition
 from companion.situation.situation import Situation
 from tests.companion.facts import CONFIG, changed, reference_at, situation
 
@@ -18,24 +18,23 @@ def still(unanswered_s: float, seen_m: float | None = FEET_M) -> Situation:
     return changed(facts, unanswered_s=unanswered_s)
 
 
-@pytest.mark.parametrize("unanswered_s", [0.3, 1.7])
-def test_disputed_contact_is_believed_once_a_question_asked_since_is_answered(unanswered_s: float) -> None:
-    facts = still(unanswered_s)
-    assert TOUCHED_BY_DISPUTE.is_true(facts, CONFIG)
-    assert TOUCHED_BY_DISPUTE.hold_s(facts, CONFIG) == max(RANGE_FINDER.disputed_hold_s, unanswered_s)
+@pytest.mark.parametrize("seen_m", [0.01, 0.9 * RANGE_FINDER.contact_height_max_m, FEET_M, None])
+@pytest.mark.parametrize("trial", [TOUCHED, TOUCHED_BY_DISPUTE])
+def test_no_trial_of_a_contact_goes_on_while_nothing_is_answered(trial: Condition, seen_m: float | None) -> None:
+    assert trial.is_true(still(0.15, seen_m), CONFIG) is (trial is TOUCHED_BY_DISPUTE or seen_m != FEET_M)
+    assert not trial.is_true(still(0.25, seen_m), CONFIG)
 
 
-@pytest.mark.parametrize("seen_m", [0.01, 0.9 * RANGE_FINDER.contact_height_max_m, None])
-def test_contact_that_no_range_finder_disputes_waits_for_no_answer(seen_m: float | None) -> None:
-    unanswered, answered = still(1.7, seen_m), still(0.0, seen_m)
-    assert TOUCHED.is_true(unanswered, CONFIG)
-    assert TOUCHED.hold_s(unanswered, CONFIG) == TOUCHED.hold_s(answered, CONFIG)
-    assert not UNHEARD.is_true(unanswered, CONFIG)
+def test_slow_link_is_given_the_time_that_its_answers_take() -> None:
+    slow = changed(still(0.7, None), late_s=0.3)
+    assert TOUCHED.is_true(slow, CONFIG)
+    assert not TOUCHED.is_true(changed(slow, unanswered_s=0.85), CONFIG)
 
 
+@pytest.mark.parametrize("seen_m", [0.01, FEET_M, None])
 @pytest.mark.parametrize(("more_s", "expected"), [(-0.01, False), (0.01, True)])
-def test_drone_that_may_hover_breaks_off(more_s: float, *, expected: bool) -> None:
-    assert UNHEARD.is_true(still(RANGE_FINDER.disputed_hold_s + more_s), CONFIG) is expected
+def test_drone_that_may_hover_breaks_off(seen_m: float | None, more_s: float, *, expected: bool) -> None:
+    assert UNHEARD.is_true(still(RANGE_FINDER.disputed_hold_s + more_s, seen_m), CONFIG) is expected
 
 
 def test_drone_that_sinks_with_its_setpoint_lands_on() -> None:
