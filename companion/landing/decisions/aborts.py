@@ -27,7 +27,7 @@ from companion.landing.decisions.conditions import (
 from companion.landing.decisions.contact_trial import is_in_contact
 from companion.situation.phases import LANDING_PHASES, NEAR_PHASES, Phase
 from companion.situation.situation import Approach, Situation
-from companion.vehicle.pad_reach import cone_radius_m, is_unseen, is_vague, over_pad_radius_m
+from companion.vehicle.pad_reach import cone_radius_m, is_unseen, is_vague
 
 _DESCENT = frozenset({Phase.DESCEND})
 _MIXED_HOLD_S = 1.5  # three counts: a step of the drone's own frame has sightings of half a second rejected
@@ -129,11 +129,6 @@ def _has_touched(s: Situation, c: CompanionConfig) -> bool:
         return False
     room_m = a.pad_half_width_m - a.distance_m
     return 0.5 * a.speed_m_s**2 < _FRICTION_MIN * GRAVITY_M_S2 * room_m
-
-
-def is_over_pad(a: Approach, c: CompanionConfig) -> bool:
-    """Return whether the drone is so near the pad's centre that what it touches is the pad."""
-    return a.distance_m < over_pad_radius_m(a.pad_half_width_m, c)
 
 
 def _is_too_fast_near_pad(s: Situation, c: CompanionConfig) -> bool:

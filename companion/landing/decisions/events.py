@@ -9,7 +9,6 @@ from companion.core.reasons import Cause, Reason
 from companion.landing.decisions.aborts import (
     ABORTS,
     CONTACT_RISKY,
-    is_over_pad,
     is_pad_unplaced,
     is_uncertain,
     must_be_seen,
@@ -32,8 +31,8 @@ from companion.landing.decisions.taken_control import find_taken_control
 from companion.landing.decisions.waiting import waited_s
 from companion.landing.state.memory import ControlMemory, Held, Progress
 from companion.situation.phases import FLYING_PHASES, LANDING_PHASES, Event, Phase
-from companion.situation.situation import Situation
-from companion.vehicle.pad_reach import left_behind_m
+from companion.situation.situation import Approach, Situation
+from companion.vehicle.pad_reach import left_behind_m, over_pad_radius_m
 
 _COMMITTED = (*MISSED, CONTACT_RISKY)
 _STDS = 2.0  # by which the pad may be elsewhere
@@ -84,6 +83,11 @@ def _go_on(progress: Progress, control: ControlMemory, s: Situation, config: Com
     if progress.phase is Phase.WAITING and not holds(DRIVES, progress.held, s, config):
         return None
     return _advance(progress, control, s, config)
+
+
+def is_over_pad(a: Approach, c: CompanionConfig) -> bool:
+    """Return whether the drone is so near the pad's centre that what it touches is the pad."""
+    return a.distance_m < over_pad_radius_m(a.pad_half_width_m, c)
 
 
 def _is_committed(s: Situation, config: CompanionConfig) -> bool:

@@ -4,9 +4,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from companion.landing.decisions.aborts import is_over_pad
 from companion.landing.decisions.contact import Verdict, verdict
 from companion.landing.decisions.contact_signs import signs_of
+from companion.landing.decisions.events import is_over_pad
 from companion.situation.phases import Phase
 from companion.situation.situation import Situation
 from companion.vehicle.pad_reach import (
