@@ -49,11 +49,12 @@ def test_second_late_report_of_a_kind_counts_whatever_number_somebody_forges() -
     assert taken == 3
 
 
-def test_report_that_is_late_now_and_then_is_passed_over_each_time() -> None:
-    reports = LateReports()
-    for number in range(0, 40, 4):
-        assert not reports.is_late(report(number + 1), number * SECOND_NS)
-        assert reports.is_late(report(number), number * SECOND_NS + SECOND_NS // 20)
+@pytest.mark.parametrize("every_s", [1.0, 0.2], ids=["of one a second", "of ten a second, every other one"])
+def test_report_that_is_late_now_and_then_is_passed_over_each_time(every_s: float) -> None:
+    reports, every_ns = LateReports(), round(every_s * SECOND_NS)
+    for place in range(20):
+        assert not reports.is_late(report(4 * place + 1), place * every_ns)
+        assert reports.is_late(report(4 * place), place * every_ns + SECOND_NS // 20)
 
 
 def test_what_tells_no_state_is_never_late() -> None:
