@@ -143,6 +143,7 @@ def _situation(memory: StepMemory, pad: PadPath | None, inputs: StepInputs, syst
             ),
             late_s=inputs.link_delay.mean_s + inputs.link_delay.std_s,
             unanswered_s=inputs.link_delay.unanswered_s,
+            answering_s=inputs.link_delay.answering_s,
             rides_m=memory.model.ride.above_m,
         ),
         waiting_point_enu_m=memory.places.waiting_point_enu_m,

@@ -10,7 +10,7 @@ from companion.landing.guiding import guiding_message
 from companion.landing.state.memory import StepMemory
 from companion.landing.state.step_data import StepInputs, StepOutputs, System
 from companion.landing.steering.virtual_model import response_to
-from companion.runtime.link_delay import link_delay, may_touch
+from companion.runtime.link_delay import link_delay
 from companion.runtime.publishing import StatusPublisher, with_links
 from companion.runtime.step_clock import StepClock
 from companion.runtime.step_commands import StepCommands, refuse_motors_off
@@ -218,7 +218,7 @@ class CompanionNode:
         )
         self.inputs = inputs
         self.memory, self.outputs = companion_step(self.memory, inputs, self.system)
-        self.autopilot.session.clock_sync.asks_often = may_touch(self.outputs.status, self.system.config)
+        self.autopilot.session.clock_sync.asks_often = self.phase is Phase.DESCEND
         self._send(inputs, self.outputs, local_ns)
 
     def _start_refusal(self, switched: Command | None) -> CommandReply | None:

@@ -16,7 +16,7 @@ from companion.landing.decisions.contact_signs import signs_of, signs_text
 from companion.landing.decisions.contact_trial import (
     is_contact_tried,
     is_disputed_contact_tried,
-    is_trial_unheard,
+    is_unheard,
     trial_hold_s,
 )
 from companion.landing.state.memory import Held
@@ -211,7 +211,7 @@ MISSED = (
         is_true=_is_road_below,
         hold_s=lambda _, c: c.touchdown.range_finder.off_hold_s,
     ),
-    Condition(reason=Reason.SETPOINTS_UNHEARD, phases=_DESCENT, is_true=is_trial_unheard),
+    Condition(reason=Reason.SETPOINTS_UNHEARD, phases=_DESCENT, is_true=is_unheard),
 )
 """What ends a commitment to land as well: the pad is not where it is said to be, or nothing presses the drone down."""
 

@@ -1,9 +1,10 @@
 """How long the signs of a contact are tried before they are believed, in a step's facts; pure.
 
 An autopilot that hears no setpoint hovers above the last one, and the signs agree as on a pad; the range finder's too
-if it hovers low enough. A press shows that only if the autopilot hears it. So no trial goes on while it answers no
-question of the time. Low above a pad it is asked as often as setpoints are sent: over a link that loses a fifth of all
-frames each way 0.2 s pass without an answer once in 27,000 times.
+if it hovers low enough. A press shows that only if the autopilot hears it, and follows: ArduCopter, which had begun to
+brake, sank no faster for 0.2 s after it was pressed anew. So no trial goes on while it answers no question of the time,
+nor for a second afterwards. In a descent it is asked as often as setpoints are sent: over a link that loses a fifth of
+all frames each way 0.2 s pass without an answer once in 27,000 times.
 """
 
 from companion.config.companion import CompanionConfig
@@ -11,6 +12,7 @@ from companion.landing.decisions.contact import Verdict, trial_press_m_s2, trial
 from companion.landing.decisions.contact_signs import signs_of
 from companion.situation.situation import Situation
 
+_FOLLOWS_AGAIN_S = 1.0  # after it has heard nothing for a moment
 _UNHEARD_MAX_S = 0.2  # beyond the way there and back; a drone that sinks to a contact takes longer to seem to stand
 
 
@@ -39,9 +41,13 @@ def is_disputed_contact_tried(s: Situation, c: CompanionConfig) -> bool:
     return _is_heard(s) and _may_stand(s, c)
 
 
-def is_trial_unheard(s: Situation, c: CompanionConfig) -> bool:
-    """Return whether the drone may hover: its autopilot has answered nothing for longer than a trial lasts."""
-    return s.following.unanswered_s > c.touchdown.range_finder.disputed_hold_s and _may_stand(s, c)
+def is_unheard(s: Situation, c: CompanionConfig) -> bool:
+    """Return whether the autopilot has answered nothing for so long that the drone hovers, or seems to stand so.
+
+    It would come down too fast to where its setpoint has sunk meanwhile, as soon as it hears of it.
+    """
+    is_long = s.following.unanswered_s > c.touchdown.range_finder.disputed_hold_s
+    return is_long or (not _is_answering(s) and _may_stand(s, c))
 
 
 def _may_stand(s: Situation, c: CompanionConfig) -> bool:
@@ -49,6 +55,11 @@ def _may_stand(s: Situation, c: CompanionConfig) -> bool:
 
 
 def _is_heard(s: Situation) -> bool:
+    answering_s = s.following.answering_s
+    return _is_answering(s) and (answering_s is None or answering_s >= _FOLLOWS_AGAIN_S)
+
+
+def _is_answering(s: Situation) -> bool:
     return s.following.unanswered_s <= _UNHEARD_MAX_S + 2.0 * s.following.late_s
 
 

@@ -28,11 +28,13 @@ class LinkDelay(Struct, frozen=True, kw_only=True):
         mean_s: mean time that a message is on its way.
         std_s: standard deviation of that time.
         unanswered_s: since the newest question was asked that the autopilot has answered.
+        answering_s: for how long answers had come without a gap by the newest; None of an autopilot that gives none.
     """
 
     mean_s: float = 0.0
     std_s: float = 0.0
     unanswered_s: float = 0.0
+    answering_s: float | None = None
 
 
 class VehicleInputs(Struct, frozen=True, kw_only=True, eq=False):

@@ -164,6 +164,17 @@ def test_questions_in_between_tell_that_the_autopilot_hears_and_nothing_of_the_c
     assert sync.round_trips == 0
 
 
+def test_answers_go_on_from_the_first_after_a_gap() -> None:
+    sync, since_ns = ClockSync(), []
+    sync.asks_often = True
+    for ms in range(0, 1000, 20):
+        question = sync.poll(START_NS + ms * MS)
+        if question is not None and not 300 <= ms < 520 and not 600 <= ms < 780:
+            sync.timesync(mavlink.MAVLink_timesync_message(tc1=BOOTED_NS, ts1=question.ts1), START_NS + (ms + 9) * MS)
+        since_ns.append(sync.answering_since_ns)
+    assert set(since_ns) == {START_NS + 9 * MS, START_NS + 529 * MS}
+
+
 def test_an_answer_in_unix_time_is_no_boot_time() -> None:
     sync = ClockSync()
     sync.poll(START_NS)

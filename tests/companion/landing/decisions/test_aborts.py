@@ -33,7 +33,14 @@ from tests.companion.facts import (
 from tests.companion.landing.decisions.unsafe_facts import HALF_M, HIGH_M, LOW_M, UNSAFE, risky
 from tests.companion.world import LANDING
 
-BLIND = (Reason.OWN_POSITION_OLD, Reason.HEADING_UNKNOWN, Reason.BELOW_PAD, Reason.NOTHING_TOUCHED, Reason.ROAD_BELOW)
+BLIND = (
+    Reason.OWN_POSITION_OLD,
+    Reason.HEADING_UNKNOWN,
+    Reason.BELOW_PAD,
+    Reason.NOTHING_TOUCHED,
+    Reason.ROAD_BELOW,
+    Reason.SETPOINTS_UNHEARD,
+)
 # These cannot be true of a drone that is committed: it is over the pad and hardly moves against it.
 UNFIT = {Reason.OUTSIDE_CONE, Reason.TOO_FAST_NEAR_PAD}
 # This ends a commitment.
@@ -136,7 +143,7 @@ def test_below_the_commit_height_it_lands_rather_than_aborts(reason: Reason) -> 
 
 
 @pytest.mark.parametrize("reason", BLIND)
-def test_below_the_commit_height_it_does_not_land_where_nobody_knows_the_pad_to_be(reason: Reason) -> None:
+def test_below_the_commit_height_it_does_not_land_blind_or_unheard(reason: Reason) -> None:
     blind = UNSAFE[reason]
     relative = blind.approach
     if blind.pad is not None and relative is not None and relative.height_m > LOW_M:

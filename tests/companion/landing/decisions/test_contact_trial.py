@@ -25,6 +25,12 @@ def test_no_trial_of_a_contact_goes_on_while_nothing_is_answered(trial: Conditio
     assert not trial.is_true(still(0.25, seen_m), CONFIG)
 
 
+@pytest.mark.parametrize("trial", [TOUCHED, TOUCHED_BY_DISPUTE])
+def test_drone_has_a_second_to_follow_again_before_a_contact_is_tried(trial: Condition) -> None:
+    assert trial.is_true(changed(still(0.1, None), answering_s=1.01), CONFIG)
+    assert not trial.is_true(changed(still(0.1, None), answering_s=0.99), CONFIG)
+
+
 def test_slow_link_is_given_the_time_that_its_answers_take() -> None:
     slow = changed(still(0.7, None), late_s=0.3)
     assert TOUCHED.is_true(slow, CONFIG)
@@ -34,9 +40,10 @@ def test_slow_link_is_given_the_time_that_its_answers_take() -> None:
 @pytest.mark.parametrize("seen_m", [0.01, FEET_M, None])
 @pytest.mark.parametrize(("more_s", "expected"), [(-0.01, False), (0.01, True)])
 def test_drone_that_may_hover_breaks_off(seen_m: float | None, more_s: float, *, expected: bool) -> None:
-    assert UNHEARD.is_true(still(RANGE_FINDER.disputed_hold_s + more_s, seen_m), CONFIG) is expected
+    assert UNHEARD.is_true(still(0.2 + more_s, seen_m), CONFIG) is expected
 
 
-def test_drone_that_sinks_with_its_setpoint_lands_on() -> None:
-    facts = changed(still(1.7), reference=reference_at(FEET_M))
-    assert not UNHEARD.is_true(facts, CONFIG)
+@pytest.mark.parametrize(("more_s", "expected"), [(-0.01, False), (0.01, True)])
+def test_drone_that_does_not_seem_to_stand_breaks_off_later(more_s: float, *, expected: bool) -> None:
+    facts = changed(still(RANGE_FINDER.disputed_hold_s + more_s), reference=reference_at(FEET_M))
+    assert UNHEARD.is_true(facts, CONFIG) is expected
