@@ -3,8 +3,8 @@
 An autopilot that hears no setpoint hovers above the last one, and the signs agree as on a pad; the range finder's too
 if it hovers low enough. A press shows that only if the autopilot hears it, and follows: ArduCopter, which had begun to
 brake, sank no faster for 0.2 s after it was pressed anew. So no trial goes on while it answers no question of the time,
-nor for a second afterwards. In a descent it is asked as often as setpoints are sent: over a link that loses a fifth of
-all frames each way 0.2 s pass without an answer once in 27,000 times.
+nor for a second afterwards. From the chase on it is asked as often as setpoints are sent: over a link that loses a
+fifth of all frames each way 0.2 s pass without an answer once in 27,000 times.
 """
 
 from companion.config.companion import CompanionConfig
