@@ -19,9 +19,7 @@ from companion.vehicle.estimator import BufferHealth
 from companion.vehicle.filter_step import OF_DRONE, RANK
 
 _EVERY_NS = 500_000_000
-_SAMPLES_KEPT = (
-    20  # samples, of 10 s in all: a step of the drone's own frame has measurements of half a second rejected
-)
+_SAMPLES_KEPT = 20  # of 10 s in all: a step of the drone's own frame has measurements of half a second rejected
 _MEASUREMENTS_MIN = 20  # measurements that something is said of
 
 _JUDGED = {one: RANK[one] for one in Quantity if one is not Quantity.PAD and one not in OF_DRONE}

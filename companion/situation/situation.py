@@ -109,7 +109,7 @@ class Following(Struct, frozen=True, kw_only=True):
         reference: the virtual model that they follow.
         late_s: after which most have come: the link's mean delay and its standard deviation.
         unanswered_s: for so long nothing has shown that the autopilot hears them.
-        answering_s: for so long it had shown that without a gap; None of one that never does.
+        answering_s: how long ago it began to show that without a gap; None of one that never does.
         rides_m: the lowest foot above that of a level drone on the virtual model, when it could touch nothing.
     """
 

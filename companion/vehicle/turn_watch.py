@@ -6,6 +6,7 @@ counts for no more than a radian: a rate that runs away for a moment is another 
 """
 
 import math
+from collections.abc import Sequence
 
 from companion.core.data import STEP_MAX_S
 
@@ -18,13 +19,18 @@ _STDS = 3.0
 
 
 class TurnWatch:
-    """Takes headings and yaw rates of a vehicle's unit, in the order in which they come."""
+    """Takes headings and yaw rates of a vehicle's unit, in the order in which they come.
+
+    Attributes:
+        doubt: what is told of a rate by which the heading does not turn; None of one that fits, and before that shows.
+    """
 
     def __init__(self) -> None:
+        self.doubt: str | None = None
         self._newest: tuple[int, float] | None = None
         self._lasted_s = 0.0
         self._told_rad = 0.0  # in the present window, by the rate
-        self._turned_rad = 0.0  # likewise, by the heading
+        self._turned_rad = 0.0  # in the present window, by the heading
         self._windows: list[tuple[float, float, float]] = []  # both, counted as the rate's, and the latter's variance
 
     def take(self, t_ns: int, yaw_rad: float, variance_rad2: float, rate_rad_s: float) -> None:
@@ -46,18 +52,18 @@ class TurnWatch:
         if told_rad >= _TURN_MIN_RAD:
             window = (min(told_rad, _TURN_MAX_RAD), turned_rad, 2.0 * variance_rad2)
             self._windows = [*self._windows[-_WINDOWS + 1 :], window]
+            self.doubt = _doubt_of(self._windows)
 
     @property
     def is_believed(self) -> bool:
         """Whether the heading turns by what the rate tells, as far as that shows."""
         return self.doubt is None
 
-    @property
-    def doubt(self) -> str | None:
-        """What is told of a rate that is not; None of one that is, and before that shows."""
-        if len(self._windows) < _WINDOWS_MIN:
-            return None
-        told_rad, turned_rad, variance_rad2 = map(sum, zip(*self._windows, strict=True))
-        if abs(turned_rad / told_rad - 1.0) <= _OFF_MAX + _STDS * math.sqrt(variance_rad2) / told_rad:
-            return None
-        return "the heading of the same unit turns otherwise: see rad/s, sign (counter-clockwise)"
+
+def _doubt_of(windows: Sequence[tuple[float, float, float]]) -> str | None:
+    if len(windows) < _WINDOWS_MIN:
+        return None
+    told_rad, turned_rad, variance_rad2 = map(sum, zip(*windows, strict=True))
+    if abs(turned_rad / told_rad - 1.0) <= _OFF_MAX + _STDS * math.sqrt(variance_rad2) / told_rad:
+        return None
+    return "the heading of the same unit turns otherwise: see rad/s, sign (counter-clockwise)"

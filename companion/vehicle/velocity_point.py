@@ -14,7 +14,7 @@ import numpy as np
 from msgspec import Struct
 
 from companion.core.data import Measurement, Quantity
-from companion.vehicle.velocity_lag import Told, has_gap, mean_of, next_window, recent, told_of, velocities_within
+from companion.vehicle.told_motion import Told, ToldMotion, Window, take_told
 from link.records import replace
 
 _MEMORY_S = 300.0  # the point does not change, but who drives may tell more
@@ -28,18 +28,16 @@ class VelocityPoint(Struct, frozen=True, kw_only=True):
     """What is known of the point.
 
     Attributes:
-        places: of the last seconds, oldest first.
-        velocities: likewise.
+        motion: what was told lately.
         information_per_m2: sum of the squared turns over the variances.
-        ahead_per_m: sum of the turns times the differences over them, along the course.
-        left_per_m: likewise, to its left.
-        squares: sum of the squared differences over them.
-        windows: how many.
+        ahead_per_m: sum of the turns times the differences over the variances, along the course.
+        left_per_m: sum of the turns times the differences over the variances, to the left of the course.
+        squares: sum of the squared differences over the variances.
+        windows: how many differences these sums are of.
         is_known: it was farther from the antenna than its least and its error once; then it counts as it is.
     """
 
-    places: tuple[Told, ...] = ()
-    velocities: tuple[Told, ...] = ()
+    motion: ToldMotion = ToldMotion()
     information_per_m2: float = 0.0
     ahead_per_m: float = 0.0
     left_per_m: float = 0.0
@@ -67,19 +65,12 @@ class VelocityPoint(Struct, frozen=True, kw_only=True):
 
 def learn_point(point: VelocityPoint, measurements: Sequence[Measurement]) -> VelocityPoint:
     """Return the point after `measurements`, whose velocities are true at their times."""
-    places, velocities = told_of(measurements, Quantity.POSITION), told_of(measurements, Quantity.VELOCITY)
-    if not places and not velocities:
+    motion, window = take_told(point.motion, measurements)
+    if motion is not point.motion:
+        point = replace(point, motion=motion)
+    if window is None or min(map(_speed_m_s, (window.velocities[0], window.velocities[-1]))) < _SPEED_MIN_M_S:
         return point
-    places, velocities = recent((*point.places, *places)), recent((*point.velocities, *velocities))
-    point = replace(point, places=places, velocities=velocities)
-    window = next_window(places, velocities)
-    if window is None:
-        return point
-    within = velocities_within(velocities, window)
-    point = replace(point, places=tuple(one for one in places if one.t_ns >= window[1].t_ns))
-    if has_gap(within) or min(map(_speed_m_s, (within[0], within[-1]))) < _SPEED_MIN_M_S:
-        return point
-    return _with_window(point, window, within)
+    return _with_window(point, window)
 
 
 def velocities_of_antenna(point: VelocityPoint, measurements: Sequence[Measurement]) -> tuple[Measurement, ...]:
@@ -90,7 +81,7 @@ def velocities_of_antenna(point: VelocityPoint, measurements: Sequence[Measureme
 
 
 def _of_antenna(point: VelocityPoint, velocity: Measurement) -> Measurement:
-    lately = [one for one in point.velocities if -_TURN_OVER_NS <= one.t_ns - velocity.t_ns <= 0]
+    lately = [one for one in point.motion.velocities if -_TURN_OVER_NS <= one.t_ns - velocity.t_ns <= 0]
     if len(lately) < 2 or min(map(_speed_m_s, (lately[0], lately[-1]))) < _SPEED_MIN_M_S:
         return velocity
     first, last = lately[0], lately[-1]
@@ -108,15 +99,14 @@ def _of_antenna(point: VelocityPoint, velocity: Measurement) -> Measurement:
     )
 
 
-def _with_window(point: VelocityPoint, window: tuple[Told, Told], within: Sequence[Told]) -> VelocityPoint:
-    """Return the point after a window: its first and last place, and the velocities from one to the other."""
-    begun, ended = window
-    lasted_s = (ended.t_ns - begun.t_ns) * 1e-9
-    (ux_0, uy_0), (ux_1, uy_1) = _course(within[0]), _course(within[-1])
+def _with_window(point: VelocityPoint, window: Window) -> VelocityPoint:
+    begun, ended, velocities = window
+    lasted_s, (east_m_s, north_m_s) = window.lasted_s, window.mean_m_s
+    (ux_0, uy_0), (ux_1, uy_1) = _course(velocities[0]), _course(velocities[-1])
     dx, dy = ux_1 - ux_0, uy_1 - uy_0
-    east_m = lasted_s * mean_of(within, "east") - (ended.east - begun.east)
-    north_m = lasted_s * mean_of(within, "north") - (ended.north - begun.north)
-    variance = begun.variance + ended.variance + lasted_s**2 * within[0].variance / len(within)
+    east_m = lasted_s * east_m_s - (ended.east - begun.east)
+    north_m = lasted_s * north_m_s - (ended.north - begun.north)
+    variance = begun.variance + ended.variance + lasted_s**2 * velocities[0].variance / len(velocities)
     keep = math.exp(-lasted_s / _MEMORY_S)
     learnt = replace(
         point,

@@ -13,7 +13,9 @@ _FAST_PERIOD_NS = 100_000_000
 _FAST_COUNT = 20  # so many are asked so quickly at first, 2 s worth
 _PERIOD_NS = 500_000_000
 _OFTEN_PERIOD_NS = 20_000_000  # as often as setpoints are sent
-_GAP_NS = 200_000_000  # between questions: a link that loses a fifth of all frames each way has it once in 27,000 times
+ANSWER_GAP_S = 0.2
+"""Between answered questions, from which on the autopilot may not hear. A link that loses a fifth of all frames on each
+way has it once in 27,000 times."""
 _CLOCK = ClockConfig()
 _MS_NS = 1_000_000
 _BOOT_TURN_NS = (1 << 32) * _MS_NS
@@ -64,7 +66,7 @@ class ClockSync:
         clock: what is known of the clocks.
         round_trips: answers used.
         answered_ns: local time at which the newest question that was answered had been asked, None before the first.
-        answering_since_ns: local time since which answers have come without a gap of 0.2 s, None before the first.
+        answering_since_ns: local time since which answers have come without a gap as above, None before the first.
         asks_often: to know from instant to instant that the autopilot hears. Of these answers the clocks learn nothing.
     """
 
@@ -110,7 +112,7 @@ class ClockSync:
         if message.tc1 == 0:
             return mavlink.MAVLink_timesync_message(tc1=max(t_ns, 1), ts1=message.ts1)  # 0 would be a question
         if message.ts1 in self._asked_ns and _is_boot_time(message.tc1):
-            if self.answered_ns is None or message.ts1 - self.answered_ns > _GAP_NS:
+            if self.answered_ns is None or message.ts1 - self.answered_ns > ANSWER_GAP_S * 1e9:
                 self.answering_since_ns = t_ns
             self.answered_ns = max(message.ts1, self.answered_ns or message.ts1)
             if self._asked_ns.pop(message.ts1):

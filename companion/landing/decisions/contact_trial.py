@@ -11,9 +11,9 @@ from companion.config.companion import CompanionConfig
 from companion.landing.decisions.contact import Verdict, trial_press_m_s2, trial_s, verdict
 from companion.landing.decisions.contact_signs import signs_of
 from companion.situation.situation import Situation
+from link.mavlink.timesync import ANSWER_GAP_S
 
 _FOLLOWS_AGAIN_S = 1.0  # after it has heard nothing for a moment
-_UNHEARD_MAX_S = 0.2  # beyond the way there and back; a drone that sinks to a contact takes longer to seem to stand
 
 
 def trial_press(s: Situation, c: CompanionConfig) -> float:
@@ -60,7 +60,8 @@ def _is_heard(s: Situation) -> bool:
 
 
 def _is_answering(s: Situation) -> bool:
-    return s.following.unanswered_s <= _UNHEARD_MAX_S + 2.0 * s.following.late_s
+    """Return whether it still answers; a drone that sinks to a contact takes longer to seem to stand than the gap."""
+    return s.following.unanswered_s <= ANSWER_GAP_S + 2.0 * s.following.late_s
 
 
 def _late_s(s: Situation) -> float:

@@ -28,7 +28,7 @@ class LinkDelay(Struct, frozen=True, kw_only=True):
         mean_s: mean time that a message is on its way.
         std_s: standard deviation of that time.
         unanswered_s: since the newest question was asked that the autopilot has answered.
-        answering_s: for how long answers had come without a gap by the newest; None of an autopilot that gives none.
+        answering_s: how long ago answers began to come without a gap; None of an autopilot that gives none.
     """
 
     mean_s: float = 0.0
