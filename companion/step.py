@@ -3,6 +3,8 @@
 Pure: the same memory, inputs and system give the same result, in flight, in simulation and in replay.
 """
 
+import math
+
 from companion.config.companion import CompanionConfig
 from companion.integrity.heights import is_road_elsewhere, update_ground
 from companion.integrity.vehicle_data import update_course
@@ -31,6 +33,8 @@ from companion.situation.situation import Below, Following, Situation, VehicleNe
 from companion.vehicle.pad import PadPath
 from link.frames.rotations import yaw_of
 from link.records import replace
+
+_GUST_STDS = 3.0
 
 
 def companion_step(memory: StepMemory, inputs: StepInputs, system: System) -> tuple[StepMemory, StepOutputs]:
@@ -145,12 +149,19 @@ def _situation(memory: StepMemory, pad: PadPath | None, inputs: StepInputs, syst
             unanswered_s=inputs.link_delay.unanswered_s,
             answering_s=inputs.link_delay.answering_s,
             rides_m=memory.model.ride.above_m,
+            pushed_m_s2=_pushed_m_s2(memory),
         ),
         waiting_point_enu_m=memory.places.waiting_point_enu_m,
         rival=inputs.rival,
         limits=inputs.limits,
         speed_limited_by=() if inputs.driver is None else inputs.driver.speed_parameters,
     )
+
+
+def _pushed_m_s2(memory: StepMemory) -> float:
+    """Return how hard the air pushes the drone in such a gust as is felt once in some minutes."""
+    steady_m_s2 = math.hypot(*memory.model.tracking.air_enu_m_s2.tolist())
+    return steady_m_s2 + _GUST_STDS * memory.forecast.gusts.push_std_m_s2
 
 
 def _look(memory: StepMemory, situation: Situation, pad: PadPath | None, config: CompanionConfig) -> StepMemory:

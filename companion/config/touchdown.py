@@ -44,6 +44,9 @@ class TouchdownConfig(StrictModel):
 
     gear_height_m: NotNegative = 0.12  # from the feet to the point whose position the autopilot reports
     foot_radius_m: NotNegative = 0.2  # of the feet about the drone's axis: the lowest of a leaning drone touches first
+    # Of the feet on the pad, the tangent of the slope on which the drone slides off with its motors off: rubber on dry
+    # painted metal 0.8, on a wet one 0.5. Where the air pushes harder than that, no landing is tried.
+    gear_friction: Annotated[float, Field(gt=0.0, le=2.0)] = 0.8
     height_max_m: Positive = 0.35  # estimated height over the pad at which a contact is believed
     blocked_depth_m: Positive = 0.06  # how far the setpoint has sunk below the drone
     blocked_speed_m_s: Positive = 0.2  # relative vertical speed that counts as standing

@@ -82,6 +82,7 @@ class Reason(Enum):
     SETPOINT_NOT_FOLLOWED = "setpoint not followed"
     OUTSIDE_CONE = "outside the descent cone"
     TOO_FAST_NEAR_PAD = "too fast against the pad"
+    WOULD_BLOW_OFF = "the air pushes with up to {:.2f} of the drone's weight, its gear holds {:.2f}: drive slower"
     CONTACT_RISKY = "a safe contact is forecast with {:.0%} only"
     SEEN_TOO_NEAR = "range finder sees less room than there is to the pad"
     TOO_FAR_FROM_START = "too far from the start"

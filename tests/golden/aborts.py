@@ -169,6 +169,9 @@ ABORTS: dict[str, Abort] = {
         reason=Reason.SETPOINT_NOT_FOLLOWED,
         companion={"setpoints": {"lead_s": 0.5, "corrects_lag": False}, "abort": {"tracking_stds_max": 4.0}},
     ),
+    "would_blow_off": Abort(
+        reason=Reason.WOULD_BLOW_OFF, scenario="straight_15", companion={"touchdown": {"gear_friction": 0.2}}
+    ),
     "contact_risky": Abort(
         reason=Reason.CONTACT_RISKY,
         fault=_when_below(_COMMITTED_M, _pad_is_described(forward_m=1.5 * _BESIDE_M, up_m=0.0)),

@@ -4,7 +4,6 @@ import math
 
 from companion.config.companion import CompanionConfig
 from companion.config.planning import LandingStyle
-from companion.core.data import GRAVITY_M_S2
 from companion.core.reasons import Cause, Reason
 from companion.integrity.contradictions import contradicts_itself, tell_rejected
 from companion.integrity.frames import tell_unseen
@@ -24,7 +23,7 @@ from companion.landing.decisions.conditions import (
     is_vehicle_taken,
     tell_taken,
 )
-from companion.landing.decisions.contact_trial import is_in_contact
+from companion.landing.decisions.standing import has_touched, tell_blown_off, would_blow_off
 from companion.situation.phases import LANDING_PHASES, NEAR_PHASES, Phase
 from companion.situation.situation import Approach, Situation
 from companion.vehicle.pad_reach import cone_radius_m, is_unseen, is_vague
@@ -33,7 +32,6 @@ _DESCENT = frozenset({Phase.DESCEND})
 _MIXED_HOLD_S = 1.5  # three counts: a step of the drone's own frame has sightings of half a second rejected
 _LOST_FOR_S = 2.0  # again and again, by plans from where it is: an uplink that is out for so long may come again
 _MOSTLY = 0.5  # of the ways in which a descent may go on
-_FRICTION_MIN = 0.5  # of rubber on painted metal when it is wet; dry 0.8
 
 
 def is_uncertain(s: Situation, c: CompanionConfig) -> bool:
@@ -91,7 +89,7 @@ def _is_beside_cone(a: Approach, c: CompanionConfig) -> bool:
 
 def _is_outside_cone(s: Situation, c: CompanionConfig) -> bool:
     a = s.approach
-    return a is not None and a.height_m < c.abort.near_height_m and _is_beside_cone(a, c) and not _has_touched(s, c)
+    return a is not None and a.height_m < c.abort.near_height_m and _is_beside_cone(a, c) and not has_touched(s, c)
 
 
 def strays(s: Situation, c: CompanionConfig) -> bool:
@@ -115,25 +113,16 @@ def _is_contact_risky(s: Situation, c: CompanionConfig) -> bool:
     if s.contact is None or s.approach is None or s.approach.height_m > c.descent.commit_height_m or is_sunk(s, c):
         return False
     is_risky = s.contact.unsafe > c.descent.risk.turns_back_min or s.contact.broken_off > _MOSTLY
-    return is_risky and not _may_stand(s.approach, c) and not _has_touched(s, c)
+    return is_risky and not _may_stand(s.approach, c) and not has_touched(s, c)
 
 
 def _tell_risk(s: Situation, _: CompanionConfig) -> Cause:
     return Cause(Reason.CONTACT_RISKY, (0.0 if s.contact is None else s.contact.s1,))
 
 
-def _has_touched(s: Situation, c: CompanionConfig) -> bool:
-    """Return whether the drone stands on the pad, or slides to rest on it: to lift off would be the greater danger."""
-    a = s.approach
-    if a is None or not is_in_contact(s, c):
-        return False
-    room_m = a.pad_half_width_m - a.distance_m
-    return 0.5 * a.speed_m_s**2 < _FRICTION_MIN * GRAVITY_M_S2 * room_m
-
-
 def _is_too_fast_near_pad(s: Situation, c: CompanionConfig) -> bool:
     a = s.approach
-    if a is None or a.height_m >= c.abort.near_height_m or _has_touched(s, c):
+    if a is None or a.height_m >= c.abort.near_height_m or has_touched(s, c):
         return False
     return a.speed_m_s > c.abort.near_speed_max_m_s
 
@@ -240,6 +229,7 @@ ABORTS = (
         is_true=outruns,
         hold_s=lambda _, c: c.chase.driving_hold_s,
     ),
+    Condition(reason=Reason.WOULD_BLOW_OFF, phases=_DESCENT, is_true=would_blow_off, cause=tell_blown_off),
     *MISSED,
     CONTACT_RISKY,
     Condition(reason=Reason.TOO_FAR_FROM_START, phases=LANDING_PHASES, is_true=is_out_of_range),

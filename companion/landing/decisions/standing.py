@@ -1,0 +1,32 @@
+"""Whether a drone that touches the pad stays there: what it slides on, and what the air does to it, in a step's facts.
+
+A drone without thrust stands by the friction of its gear alone. The air over the pad goes on to push it as it did in
+flight, where the lean that holds against the air shows how hard that is: at 45 m/s by three quarters of its weight.
+"""
+
+from companion.config.companion import CompanionConfig
+from companion.core.data import GRAVITY_M_S2
+from companion.core.reasons import Cause, Reason
+from companion.landing.decisions.contact_trial import is_in_contact
+from companion.situation.situation import Situation
+
+_FRICTION_MIN = 0.5  # of rubber on painted metal when it is wet; dry 0.8
+
+
+def has_touched(s: Situation, c: CompanionConfig) -> bool:
+    """Return whether the drone stands on the pad, or slides to rest on it: to lift off would be the greater danger."""
+    a = s.approach
+    if a is None or not is_in_contact(s, c):
+        return False
+    room_m = a.pad_half_width_m - a.distance_m
+    return 0.5 * a.speed_m_s**2 < _FRICTION_MIN * GRAVITY_M_S2 * room_m
+
+
+def would_blow_off(s: Situation, c: CompanionConfig) -> bool:
+    """Return whether the air would push the drone along the pad once its motors are off."""
+    return s.following.pushed_m_s2 > c.touchdown.gear_friction * GRAVITY_M_S2
+
+
+def tell_blown_off(s: Situation, c: CompanionConfig) -> Cause:
+    """Return that with its numbers: by which share of its weight the air pushes the drone, and what the gear holds."""
+    return Cause(Reason.WOULD_BLOW_OFF, (s.following.pushed_m_s2 / GRAVITY_M_S2, c.touchdown.gear_friction))
