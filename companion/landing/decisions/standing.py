@@ -23,7 +23,12 @@ def has_touched(s: Situation, c: CompanionConfig) -> bool:
 
 
 def would_blow_off(s: Situation, c: CompanionConfig) -> bool:
-    """Return whether the air would push the drone along the pad once its motors are off."""
+    """Return whether the air would push the drone along the pad once its motors are off.
+
+    Higher than where it waits, it may still catch up with the vehicle, and the wind is stronger.
+    """
+    if s.approach is None or s.approach.height_m > c.descent.wait.height_m:
+        return False
     return s.following.pushed_m_s2 > c.touchdown.gear_friction * GRAVITY_M_S2
 
 

@@ -41,7 +41,7 @@ class Tracking(Struct, frozen=True, kw_only=True, eq=False):
         air_enu_m_s2: (2,) horizontal thrust by mass that holds against the air, a mean of the last second.
         holds_enu_m_s2: (2,) likewise what the drone leans beyond what the model accelerates by, of the last tenth: what
             holds against the air, and what makes up for the deviation.
-        velocity_enu_m_s: (2,) horizontal velocity of the drone then.
+        velocity_enu_m_s: (3,) velocity of the drone then.
         compared_ns: monotonic time of the newest report that was compared; None before the first.
     """
 
@@ -52,7 +52,7 @@ class Tracking(Struct, frozen=True, kw_only=True, eq=False):
     deviation: Array = field(default_factory=lambda: np.zeros((STATES, 2)))
     air_enu_m_s2: Array = field(default_factory=lambda: np.zeros(2))
     holds_enu_m_s2: Array = field(default_factory=lambda: np.zeros(2))
-    velocity_enu_m_s: Array = field(default_factory=lambda: np.zeros(2))
+    velocity_enu_m_s: Array = field(default_factory=lambda: np.zeros(3))
     compared_ns: int | None = None
 
 
@@ -114,7 +114,7 @@ def update_tracking(
         compared_ns=own_ns,
         air_enu_m_s2=air_enu_m_s2,
         holds_enu_m_s2=holds_enu_m_s2,
-        velocity_enu_m_s=np.array(own.velocity_enu_m_s[:2]),
+        velocity_enu_m_s=np.array(own.velocity_enu_m_s),
     )
     if not estimates or response is None:
         return replace(tracking, deviation=np.zeros((STATES, 2)))
@@ -186,17 +186,18 @@ def _update_leans(
 ) -> tuple[Array, Array]:
     """Return the means of what the drone leans beyond what accelerates it, and beyond what the model accelerates by.
 
-    The first is by the change of its own velocity, the second by the model when the autopilot was to lean as now.
+    The first is by the change of its own velocity, the second by the model when the autopilot was to lean as now. A
+    drone that speeds up as it sinks leans more for the same thrust across.
     """
     air, holds = tracking.air_enu_m_s2, tracking.holds_enu_m_s2
     x, y, up = rotate(own.orientation_wxyz, (0.0, 0.0, 1.0))
     if up < UPRIGHT_MIN or not 0.0 < since_s < BREAK_S:
         return air, holds
-    leans = np.array([x, y]) * (GRAVITY_M_S2 / up)
-    changed = (np.array(own.velocity_enu_m_s[:2]) - tracking.velocity_enu_m_s) / since_s
+    changed = (np.array(own.velocity_enu_m_s) - tracking.velocity_enu_m_s) / since_s
+    leans = np.array([x, y]) * ((GRAVITY_M_S2 + float(changed[2])) / up)
     lag_s = 0.0 if response is None else response.cascade.lean_lag_s
     _, _, asked = _model_at(tracking, own_ns - round(lag_s * 1e9))
-    air = air - math.expm1(-since_s / _AIR_MEAN_S) * (leans - changed - air)
+    air = air - math.expm1(-since_s / _AIR_MEAN_S) * (leans - changed[:2] - air)
     return np.asarray(air), np.asarray(holds - math.expm1(-since_s / _HOLDS_MEAN_S) * (leans - asked[:2] - holds))
 
 

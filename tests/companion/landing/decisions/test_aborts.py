@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from companion.core.data import GRAVITY_M_S2
 from companion.core.reasons import Cause, Reason
 from companion.landing.decisions.aborts import ABORTS, is_not_followed, is_out_of_range, strays
 from companion.landing.decisions.conditions import Condition, cause_of
@@ -176,6 +177,24 @@ def test_a_committed_descent_turns_back_from_a_risky_contact_or_tries(facts: Sit
     decision, ticks = first_decision(Phase.DESCEND, facts, 0.1)
     assert (decision is not None and decision[1].reason is Reason.CONTACT_RISKY) is turns_back
     assert not turns_back or ticks == 0
+
+
+@pytest.mark.parametrize(
+    ("height_m", "more_m_s2", "breaks_off"),
+    [
+        (CONFIG.descent.wait.height_m + 0.01, 0.01, False),  # it may still catch up with the vehicle
+        (CONFIG.descent.wait.height_m, 0.01, True),
+        (CONFIG.descent.wait.height_m, -0.01, False),
+        (CONFIG.descent.commit_height_m + 0.01, 0.01, True),
+        (LOW_M, 0.01, False),
+    ],
+)
+def test_descent_breaks_off_where_the_air_pushes_harder_than_the_gear_holds(
+    height_m: float, more_m_s2: float, breaks_off: bool
+) -> None:
+    facts = changed(situation(height_m), pushed_m_s2=CONFIG.touchdown.gear_friction * GRAVITY_M_S2 + more_m_s2)
+    decision, _ = first_decision(Phase.DESCEND, facts, 0.1)
+    assert (decision is not None and decision[1].reason is Reason.WOULD_BLOW_OFF) is breaks_off
 
 
 @pytest.mark.parametrize(

@@ -99,6 +99,20 @@ def test_drone_that_leans_on_a_steady_path_holds_against_the_air(lean_rad: float
     np.testing.assert_allclose(tracking.air_enu_m_s2, [GRAVITY_M_S2 * math.tan(lean_rad), 0.0], atol=1e-3)
 
 
+@pytest.mark.parametrize("rising_m_s2", [-2.0, 1.5])
+def test_drone_that_speeds_up_as_it_sinks_leans_more_for_the_same_thrust_across(rising_m_s2: float) -> None:
+    air_m_s2 = 3.0
+    lean_rad = math.atan(air_m_s2 / (GRAVITY_M_S2 + rising_m_s2))
+    leaning = (math.cos(lean_rad / 2.0), 0.0, math.sin(lean_rad / 2.0), 0.0)
+    tracking = Tracking()
+    for i in range(1, 400):
+        t_s = i * STEP_NS * 1e-9
+        tracking = add_to_past(tracking, i * STEP_NS, _state(t_s, 5.0))
+        own = replace(_own(i * STEP_NS, 5.0 * t_s, 5.0, leaning), velocity_enu_m_s=(5.0, 0.0, rising_m_s2 * t_s))
+        tracking = update_tracking(tracking, i * STEP_NS, own, RESPONSE, estimates=True)
+    np.testing.assert_allclose(tracking.air_enu_m_s2, [air_m_s2, 0.0], atol=2e-3)
+
+
 def test_drone_that_leans_as_its_path_accelerates_holds_against_nothing() -> None:
     speeding_m_s2 = 2.0
     lean_rad = math.atan(speeding_m_s2 / GRAVITY_M_S2)
