@@ -7,17 +7,19 @@ Source: ArduPilot's copter documentation, guided mode; behaviour measured agains
 
 import math
 from collections.abc import Mapping
+from itertools import chain
 from types import MappingProxyType
 
 from companion.autopilots.driver import AutopilotView, Desire, DriverMemory
 from companion.autopilots.limits import (
     INTEGRAL_FACTOR_MAX,
     TILT_LEAST_DEG,
+    Limit,
     Named,
     acceleration_of_tilt_m_s2,
     attitude_lag_s,
     find_gain,
-    find_limit,
+    names_of,
 )
 from companion.autopilots.messages import (
     ASK_AGAIN_S,
@@ -42,30 +44,31 @@ _GUIDED = 4
 _BRAKE = 17  # stops and holds without sticks; LOITER would take a transmitter that is switched off for "descend"
 _TAKE_OFF_AGAIN_S = 5.0  # once it was accepted: it lifts off 3.5 to 4 s later
 _CENTI = 0.01
-_TILT_DEG = 30.0  # taken while the parameter is unknown: its default
 _TILT_MAX_DEG = 45.0  # nothing is planned beyond
-# Each with its name up to release 4.6, in centimetres or centidegrees, and from 4.7 on; the jerks' changed in it twice.
-_TILT = (Named("ANGLE_MAX", _CENTI, TILT_LEAST_DEG), Named("ATC_ANGLE_MAX", least=TILT_LEAST_DEG))
-_TILT_BY_POSITION = (Named("PSC_ANGLE_MAX", least=TILT_LEAST_DEG),)  # the smaller one counts; 0, the default, is none
-_SPEED = (Named("WPNAV_SPEED", _CENTI), Named("WP_SPD"))
-_CLIMB = (Named("WPNAV_SPEED_UP", _CENTI), Named("WP_SPD_UP"))
-_DESCENT = (Named("WPNAV_SPEED_DN", _CENTI), Named("WP_SPD_DN"))
 # The ends of their stated ranges, so that no parameter, nor one that somebody else tells, makes a path without an end.
 # PSC_JERK_Z is stated from 5 on, and is landed with at less.
 _JERK_LEAST_M_S3, _ACCELERATION_LEAST_M_S2 = 1.0, 0.5
+# With the defaults of release 4.6. Each has its name up to that release, in centimetres or centidegrees, and its name
+# from 4.7 on; the jerks' changed in it twice.
+_TILT = Limit(30.0, (Named("ANGLE_MAX", _CENTI, TILT_LEAST_DEG), Named("ATC_ANGLE_MAX", least=TILT_LEAST_DEG)))
+# The smaller one of the two counts; this one's default, 0, is none.
+_TILT_BY_POSITION = Limit(math.inf, (Named("PSC_ANGLE_MAX", least=TILT_LEAST_DEG),))
+_SPEED = Limit(10.0, (Named("WPNAV_SPEED", _CENTI), Named("WP_SPD")))
+_CLIMB = Limit(2.5, (Named("WPNAV_SPEED_UP", _CENTI), Named("WP_SPD_UP")))
+_DESCENT = Limit(1.5, (Named("WPNAV_SPEED_DN", _CENTI), Named("WP_SPD_DN")))
 # It follows no acceleration that changes faster.
-_JERK = tuple(Named(name, least=_JERK_LEAST_M_S3) for name in ("PSC_JERK_XY", "PSC_JERK_NE", "PSC_NE_JERK"))
+_JERK = Limit(5.0, tuple(Named(name, least=_JERK_LEAST_M_S3) for name in ("PSC_JERK_XY", "PSC_JERK_NE", "PSC_NE_JERK")))
 # It bounds that jerk by what its attitude controller can do, too (AC_PosControl::set_max_speed_accel_xy).
-_ACCELERATION = (
-    Named("WPNAV_ACCEL", _CENTI, _ACCELERATION_LEAST_M_S2),
-    Named("WP_ACC", least=_ACCELERATION_LEAST_M_S2),
+_ACCELERATION = Limit(
+    2.5, (Named("WPNAV_ACCEL", _CENTI, _ACCELERATION_LEAST_M_S2), Named("WP_ACC", least=_ACCELERATION_LEAST_M_S2))
 )
 _ATTITUDE_RAD_S2 = math.radians(1100.0)  # ATC_ACCEL_P_MAX by default
-_VERTICAL_ACCELERATION = (
-    Named("WPNAV_ACCEL_Z", _CENTI, _ACCELERATION_LEAST_M_S2),
-    Named("WP_ACC_Z", least=_ACCELERATION_LEAST_M_S2),
+_VERTICAL_ACCELERATION = Limit(
+    1.0, (Named("WPNAV_ACCEL_Z", _CENTI, _ACCELERATION_LEAST_M_S2), Named("WP_ACC_Z", least=_ACCELERATION_LEAST_M_S2))
 )
-_VERTICAL_JERK = tuple(Named(name, least=_JERK_LEAST_M_S3) for name in ("PSC_JERK_Z", "PSC_JERK_D", "PSC_D_JERK"))
+_VERTICAL_JERK = Limit(
+    5.0, tuple(Named(name, least=_JERK_LEAST_M_S3) for name in ("PSC_JERK_Z", "PSC_JERK_D", "PSC_D_JERK"))
+)
 _LIMITS = (
     _TILT,
     _TILT_BY_POSITION,
@@ -78,10 +81,6 @@ _LIMITS = (
     _VERTICAL_JERK,
 )
 _CARRIED_MIN_S = 0.1  # ModeGuided::get_timeout_ms
-# Taken while the parameters are unknown: the defaults of release 4.6.
-_JERK_DEFAULT_M_S3 = 5.0  # horizontally and vertically
-_ACCELERATION_DEFAULT_M_S2 = 2.5
-_VERTICAL_ACCELERATION_DEFAULT_M_S2 = 1.0
 _POSITION_GAIN = ("PSC_POSXY_P", "PSC_NE_POS_P")
 _VELOCITY_GAIN = ("PSC_VELXY_P", "PSC_NE_VEL_P")
 _INTEGRAL_GAIN = ("PSC_VELXY_I", "PSC_NE_VEL_I")
@@ -95,7 +94,7 @@ class ArduPilotDriver:
     name = "ardupilot"
     autopilot_id: int = mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA
     projection = Projection.ARDUPILOT
-    limit_names = tuple(tuple(named.name for named in names) for names in _LIMITS)
+    limit_names = names_of(_LIMITS)
     gain_names = (_POSITION_GAIN, _VELOCITY_GAIN, _INTEGRAL_GAIN, _DERIVATIVE_GAIN, _ATTITUDE_TIME)
     hover_mode = "BRAKE"
     timeout_parameter = "GUID_TIMEOUT"
@@ -103,7 +102,7 @@ class ArduPilotDriver:
     waits_in_mode = True
     follows_in_failsafe = True  # a low battery, or a radio lost, with "continue" as its action
     takes_target_in_body_axes = True
-    speed_parameters = tuple(named.name for names in (_TILT, _TILT_BY_POSITION, _SPEED) for named in names)
+    speed_parameters = tuple(chain(*names_of((_TILT, _TILT_BY_POSITION, _SPEED))))
     mode_streams_hz: Mapping[int, float] = MappingProxyType({mavlink.MAVLINK_MSG_ID_HEARTBEAT: 10.0})
     unused_streams: tuple[int, ...] = ()  # it sends nothing unasked
 
@@ -151,17 +150,15 @@ class ArduPilotDriver:
         Its limits of acceleration bound its corrections alone: what a setpoint brings along is added to them
         (AC_PosControl's shape_vel_accel without `limit_total_accel`), and the jerk of the sum is bounded.
         """
-        tilt_deg = find_limit(parameters, _TILT)
-        tilt_deg = min(tilt_deg, _TILT_MAX_DEG) if math.isfinite(tilt_deg) else _TILT_DEG
-        tilt_deg = min(tilt_deg, find_limit(parameters, _TILT_BY_POSITION))
+        tilt_deg = min(_TILT.find(parameters), _TILT_BY_POSITION.find(parameters), _TILT_MAX_DEG)
         return replace(
             wanted,
-            speed_max_m_s=min(wanted.speed_max_m_s, find_limit(parameters, _SPEED)),
-            climb_max_m_s=min(wanted.climb_max_m_s, find_limit(parameters, _CLIMB)),
-            descent_max_m_s=min(wanted.descent_max_m_s, find_limit(parameters, _DESCENT)),
+            speed_max_m_s=min(wanted.speed_max_m_s, _SPEED.find(parameters)),
+            climb_max_m_s=min(wanted.climb_max_m_s, _CLIMB.find(parameters)),
+            descent_max_m_s=min(wanted.descent_max_m_s, _DESCENT.find(parameters)),
             tilt_acceleration_m_s2=acceleration_of_tilt_m_s2(tilt_deg),
             jerk_max_m_s3=min(wanted.jerk_max_m_s3, _shaping_jerk_m_s3(parameters)),
-            vertical_jerk_max_m_s3=min(wanted.vertical_jerk_max_m_s3, find_limit(parameters, _VERTICAL_JERK)),
+            vertical_jerk_max_m_s3=min(wanted.vertical_jerk_max_m_s3, _VERTICAL_JERK.find(parameters)),
         )
 
     def cascade(self, parameters: Mapping[str, float]) -> Cascade:
@@ -185,12 +182,10 @@ class ArduPilotDriver:
         told_s = parameters.get(self.timeout_parameter, self.timeout_default_s)
         return Shaping(
             carried_s=max(told_s, _CARRIED_MIN_S) if math.isfinite(told_s) else self.timeout_default_s,
-            acceleration_m_s2=_known(find_limit(parameters, _ACCELERATION), _ACCELERATION_DEFAULT_M_S2),
-            jerk_m_s3=_known(_shaping_jerk_m_s3(parameters), _JERK_DEFAULT_M_S3),
-            vertical_acceleration_m_s2=_known(
-                find_limit(parameters, _VERTICAL_ACCELERATION), _VERTICAL_ACCELERATION_DEFAULT_M_S2
-            ),
-            vertical_jerk_m_s3=_known(find_limit(parameters, _VERTICAL_JERK), _JERK_DEFAULT_M_S3),
+            acceleration_m_s2=_ACCELERATION.find(parameters),
+            jerk_m_s3=_shaping_jerk_m_s3(parameters),
+            vertical_acceleration_m_s2=_VERTICAL_ACCELERATION.find(parameters),
+            vertical_jerk_m_s3=_VERTICAL_JERK.find(parameters),
         )
 
 
@@ -201,14 +196,10 @@ def _ask_to_take_off(memory: DriverMemory, height_m: float, monotonic_ns: int) -
     return (replace(memory, takeoff_accepted=False) if commands else memory), commands
 
 
-def _known(limit: float, default: float) -> float:
-    return limit if math.isfinite(limit) else default
-
-
 def _shaping_jerk_m_s3(parameters: Mapping[str, float]) -> float:
     """Return the jerk that its shaping keeps to: the one set, and no more than turning over and back leaves."""
-    attitude_m_s3 = 0.5 * math.sqrt(find_limit(parameters, _ACCELERATION) * GRAVITY_M_S2 * _ATTITUDE_RAD_S2)
-    return min(find_limit(parameters, _JERK), attitude_m_s3)
+    attitude_m_s3 = 0.5 * math.sqrt(_ACCELERATION.find(parameters) * GRAVITY_M_S2 * _ATTITUDE_RAD_S2)
+    return min(_JERK.find(parameters), attitude_m_s3)
 
 
 def _is_airborne(view: AutopilotView, *, rises: bool) -> bool:

@@ -1,7 +1,7 @@
 """Flight limits from an autopilot's parameters, and which of these still have to be asked for; without I/O.
 
-A limit that was never told is flown without, as if there were none, so what is known by none of its names is asked for
-again, for as long as that takes. Some firmware has no parameter of one name or another: then the question costs little.
+A limit that was never told counts as the firmware's default, so what is known by none of its names is asked for again,
+for as long as that takes. Some firmware has no parameter of one name or another: then the question costs little.
 A parameter may have been changed while nobody was heard, so that all are asked for again after a restart or a silence.
 """
 
@@ -16,7 +16,7 @@ from companion.core.data import GRAVITY_M_S2
 from link.mavlink.dialect import Message
 from link.mavlink.parameters import parameter_value
 
-_STATED_MIN = 0.1  # m/s or degrees; a limit below this cannot be flown with
+_STATED_MIN = 0.1  # m/s, m/s^2, m/s^3 or degrees; a limit below this cannot be flown with
 GAIN_FACTOR_MAX = 4.0  # about a default; the ranges that the firmwares state are narrower
 INTEGRAL_FACTOR_MAX = 40.0  # PX4 states 150 times its default as the end of the range
 TILT_LEAST_DEG = 10.0  # both firmwares' ranges begin here or above; less holds against no wind
@@ -25,20 +25,44 @@ _TILT_SHARE = 0.85  # of the largest tilt's thrust; the rest is for gusts and fo
 
 @dataclass(frozen=True, slots=True)
 class Named:
-    """One name of a parameter, what one of its units is in m/s or degrees, and what it counts as at least."""
+    """One name of a parameter that limits the flight.
+
+    Attributes:
+        name: in some releases.
+        unit: what one of its units is in m/s, m/s^2, m/s^3 or degrees.
+        least: in these, what a smaller value counts as.
+    """
 
     name: str
     unit: float = 1.0
     least: float = 0.0
 
 
-def find_limit(parameters: Mapping[str, float], names: Sequence[Named]) -> float:
-    """Return a limit by whichever of its names is known, infinity where none is or what it says cannot be meant."""
-    for named in names:
-        value = parameters.get(named.name, math.nan) * named.unit
-        if value >= _STATED_MIN:
-            return max(value, named.least)
-    return math.inf
+@dataclass(frozen=True, slots=True)
+class Limit:
+    """A limit of the autopilot's flight, in m/s, m/s^2, m/s^3 or degrees.
+
+    Attributes:
+        default: the firmware's. It counts while the autopilot has told the parameter by none of its names, as when a
+            new release calls it otherwise: planned without, the drone would be led where it does not follow.
+        names: of the parameter in the releases that are known.
+    """
+
+    default: float
+    names: tuple[Named, ...]
+
+    def find(self, parameters: Mapping[str, float]) -> float:
+        """Return the limit that `parameters` tell, the default where they tell none or one that cannot be meant."""
+        for named in self.names:
+            value = parameters.get(named.name, math.nan) * named.unit
+            if value >= _STATED_MIN:
+                return max(value, named.least)
+        return self.default
+
+
+def names_of(limits: Sequence[Limit]) -> tuple[tuple[str, ...], ...]:
+    """Return the parameters of `limits`, each by all of its names."""
+    return tuple(tuple(named.name for named in limit.names) for limit in limits)
 
 
 def find_gain(

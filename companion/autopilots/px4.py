@@ -4,17 +4,19 @@ Source: PX4 user guide, offboard mode; behaviour measured against its built-in q
 """
 
 from collections.abc import Mapping
+from itertools import chain
 from types import MappingProxyType
 
 from companion.autopilots.driver import AutopilotView, Desire, DriverMemory
 from companion.autopilots.limits import (
     INTEGRAL_FACTOR_MAX,
     TILT_LEAST_DEG,
+    Limit,
     Named,
     acceleration_of_tilt_m_s2,
     attitude_lag_s,
     find_gain,
-    find_limit,
+    names_of,
 )
 from companion.autopilots.messages import (
     Requested,
@@ -38,7 +40,12 @@ _MAIN_MODE_AUTO = 4
 _MAIN_MODE_OFFBOARD = 6
 _SUB_MODE_LOITER = 3
 _STREAM_FIRST_S = 0.5  # 0.3 s of setpoints were seen to suffice before OFFBOARD is granted
-_TILT_MAX_DEG = 45.0  # taken while MPC_TILTMAX_AIR is unknown: its default
+_TILT_MAX_DEG = 45.0  # nothing is planned beyond
+# With the defaults of its versions 1.14 to 1.17.
+_SPEED = Limit(12.0, (Named("MPC_XY_VEL_MAX"),))
+_CLIMB = Limit(3.0, (Named("MPC_Z_VEL_MAX_UP"),))
+_DESCENT = Limit(1.5, (Named("MPC_Z_VEL_MAX_DN"),))
+_TILT = Limit(45.0, (Named("MPC_TILTMAX_AIR", least=TILT_LEAST_DEG),))
 
 
 class Px4Driver:
@@ -47,7 +54,7 @@ class Px4Driver:
     name = "px4"
     autopilot_id: int = mavlink.MAV_AUTOPILOT_PX4
     projection = Projection.PX4
-    limit_names = (("MPC_XY_VEL_MAX",), ("MPC_Z_VEL_MAX_UP",), ("MPC_Z_VEL_MAX_DN",), ("MPC_TILTMAX_AIR",))
+    limit_names = names_of((_SPEED, _CLIMB, _DESCENT, _TILT))
     gain_names = (("MPC_XY_P",), ("MPC_XY_VEL_P_ACC",), ("MPC_XY_VEL_I_ACC",), ("MPC_XY_VEL_D_ACC",), ("MC_ROLL_P",))
     hover_mode = "Hold"
     timeout_parameter = "COM_OF_LOSS_T"
@@ -55,7 +62,7 @@ class Px4Driver:
     waits_in_mode = False
     takes_target_in_body_axes = False
     follows_in_failsafe = False  # what it only warns of is none
-    speed_parameters: tuple[str, ...] = ("MPC_XY_VEL_MAX",)
+    speed_parameters = tuple(chain(*names_of((_SPEED,))))
     mode_streams_hz: Mapping[int, float] = MappingProxyType({mavlink.MAVLINK_MSG_ID_CURRENT_MODE: 20.0})
     # 340 messages a second of PX4's default set for an onboard computer; slow ones are left for the log
     unused_streams = (
@@ -114,15 +121,12 @@ class Px4Driver:
         MPC_ACC_*_MAX and MPC_JERK_MAX belong to the flight tasks of its own modes; OFFBOARD gives a setpoint to the
         position controller as it is (MulticopterPositionControl).
         """
-        *names, (tilt_name,) = self.limit_names
-        speed_m_s, climb_m_s, descent_m_s = (find_limit(parameters, (Named(name),)) for (name,) in names)
-        tilt_deg = find_limit(parameters, (Named(tilt_name, least=TILT_LEAST_DEG),))
         return replace(
             wanted,
-            speed_max_m_s=min(wanted.speed_max_m_s, speed_m_s),
-            climb_max_m_s=min(wanted.climb_max_m_s, climb_m_s),
-            descent_max_m_s=min(wanted.descent_max_m_s, descent_m_s),
-            tilt_acceleration_m_s2=acceleration_of_tilt_m_s2(min(tilt_deg, _TILT_MAX_DEG)),
+            speed_max_m_s=min(wanted.speed_max_m_s, _SPEED.find(parameters)),
+            climb_max_m_s=min(wanted.climb_max_m_s, _CLIMB.find(parameters)),
+            descent_max_m_s=min(wanted.descent_max_m_s, _DESCENT.find(parameters)),
+            tilt_acceleration_m_s2=acceleration_of_tilt_m_s2(min(_TILT.find(parameters), _TILT_MAX_DEG)),
         )
 
     def cascade(self, parameters: Mapping[str, float]) -> Cascade:

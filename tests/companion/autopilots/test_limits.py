@@ -13,16 +13,36 @@ from companion.autopilots.driver import Driver
 from companion.autopilots.limits import acceleration_of_tilt_m_s2
 from companion.autopilots.px4 import Px4Driver
 from companion.autopilots.response import ResponseModel
-from companion.core.data import GRAVITY_M_S2
+from companion.core.data import GRAVITY_M_S2, FlightLimits
 from companion.landing.steering.targets import HORIZON_OFFSETS_S
+from sim_autopilot.core.parameters import Parameter
+from sim_autopilot.firmware.ardupilot.parameters import OBEYED as ARDUPILOT_PARAMETERS
+from sim_autopilot.firmware.px4.parameters import OBEYED as PX4_PARAMETERS
 
 DRIVERS = (Px4Driver(), ArduPilotDriver())
+ANY_LIMITS = FlightLimits(**dict.fromkeys(FlightLimits.__struct_fields__, math.inf))
 
 
 @given(tilt_deg=st.floats(1.0, 80.0))
 def test_thrust_to_the_side_is_what_the_tilt_gives_less_a_reserve(tilt_deg: float) -> None:
     level_m_s2 = GRAVITY_M_S2 * math.tan(math.radians(tilt_deg))
     assert 0.5 * level_m_s2 < acceleration_of_tilt_m_s2(tilt_deg) < level_m_s2
+
+
+@pytest.mark.parametrize(
+    ("driver", "reference"),
+    [(Px4Driver(), PX4_PARAMETERS), (ArduPilotDriver(), ARDUPILOT_PARAMETERS)],
+    ids=["px4", "ardupilot"],
+)
+def test_limit_that_a_firmware_calls_otherwise_counts_as_its_default(
+    driver: Driver, reference: tuple[Parameter, ...]
+) -> None:
+    defaults = {parameter.name: float(parameter.default) for parameter in reference}
+    by_default = driver.limits(ANY_LIMITS, defaults)
+    for names in driver.limit_names:
+        renamed = {name: value for name, value in defaults.items() if name not in names}
+        assert driver.limits(ANY_LIMITS, renamed) == by_default
+        assert driver.shaping(renamed) == driver.shaping(defaults)
 
 
 @pytest.mark.parametrize("driver", DRIVERS, ids=["px4", "ardupilot"])
