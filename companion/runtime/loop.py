@@ -10,6 +10,7 @@ from companion.runtime.claims import Claims
 from companion.runtime.command_desk import CommandDesk
 from companion.runtime.computer import ComputerWatch
 from companion.runtime.live_state import Onlooker, onlookers
+from companion.runtime.losses import Losses
 from companion.runtime.node import CompanionNode
 from companion.runtime.options import Links, LoopOptions, Timings
 from companion.runtime.outbox import outbox
@@ -89,7 +90,7 @@ class _Loop:
         self._pad_question = PadQuestion(zenoh, keys.pad)
         self._link_was_up: bool | None = None
         self._strangers_told = False
-        self._losses_told = False
+        self._losses = Losses(node, self._sent, zenoh, log)
         self._computer = ComputerWatch()
 
     def run(self) -> Timings:
@@ -195,7 +196,7 @@ class _Loop:
             self._log.warning("data refused", what=refused)
         self._claims.update(self._node.phase, armed=self._node.autopilot.state.view.armed)
         self._say_link()
-        self._say_losses()
+        self._losses.say()
         self._ask_for_pad()
         if self._start.follow(self._node, fix_seen=self._fix_seen):
             self._log.warning("start called off: another companion is there for this drone")
@@ -213,14 +214,6 @@ class _Loop:
             self._strangers_told = True
             self._log.warning("somebody else sends to the autopilot's link, and is not listened to")
         self._link_was_up = is_up if is_up or self._link_was_up is not None else None
-
-    def _say_losses(self) -> None:
-        """Say once that what is recorded is not complete: nobody sees it in the recording."""
-        recorders = (self._sent, self._node) if isinstance(self._node, RecordingNode) else (self._sent,)
-        if (lost := sum(one.records_lost for one in recorders)) and not self._losses_told:
-            why, self._losses_told = next(one.why_lost for one in recorders if one.records_lost), True
-            self._log.warning("records are lost", lost=lost, why=why)
-            self._node.warn(f"does not record: {why}")
 
     def _ask_for_pad(self) -> None:
         """Ask the vehicle for its pad until it has answered, and again when it has come back: it may be another one."""

@@ -1,0 +1,45 @@
+"""What gets lost in a flight and leaves no other trace, said once each in the log, and to the pilot where it counts."""
+
+from companion.runtime.node import CompanionNode
+from companion.runtime.recorded_node import RecordingNode
+from companion.runtime.sent_frames import SentFrames
+from link.recording.log import Log
+from link.zenoh.session import ZenohSession
+
+
+class Losses:
+    """Watches the counters of what could not be sent or written.
+
+    Args:
+        node: the companion.
+        sent: its frames, with their log.
+        zenoh: session by which it publishes.
+        log: of the program.
+    """
+
+    def __init__(self, node: CompanionNode, sent: SentFrames, zenoh: ZenohSession, log: Log) -> None:
+        self._node = node
+        self._sent = sent
+        self._zenoh = zenoh
+        self._log = log
+        self._are_records_told = self._are_setpoints_told = self._are_statuses_told = False
+
+    def say(self) -> None:
+        """Say what has been lost since the last call and is not told yet."""
+        if not self._are_records_told:
+            self._say_records()
+        if not self._are_setpoints_told and (withheld := self._node.autopilot.bad_setpoints):
+            self._are_setpoints_told = True
+            self._log.warning("setpoints are withheld: not finite, or absurd", withheld=withheld)
+            self._node.warn("withholds setpoints that are not finite")
+        if not self._are_statuses_told and (lost := self._node.publisher.unpublished + self._zenoh.unpublished):
+            self._are_statuses_told = True
+            self._log.warning("statuses are not published: no message holds them, or Zenoh takes none", lost=lost)
+
+    def _say_records(self) -> None:
+        recorders = (self._sent, self._node) if isinstance(self._node, RecordingNode) else (self._sent,)
+        if lost := sum(one.records_lost for one in recorders):
+            self._are_records_told = True
+            why = next(one.why_lost for one in recorders if one.records_lost)
+            self._log.warning("records are lost", lost=lost, why=why)
+            self._node.warn(f"does not record: {why}")
