@@ -50,8 +50,9 @@ def open_check(
         signing: by a key shared with the autopilot; None sends unsigned and takes everything.
         utc: whose time of day is taken for it.
     """
-    session = MavlinkSession(system_id, target_system_id=system_id, signing=signing)
-    session.clock_sync.takes_own_utc = utc is UtcOf.COMPUTER
+    session = MavlinkSession(
+        system_id, target_system_id=system_id, signing=signing, takes_own_utc=utc is UtcOf.COMPUTER
+    )
     return CheckSession(Reader(session), transport, device)
 
 

@@ -119,8 +119,8 @@ def build_node(
         signing=signing,
         records_input=records_input,
         first_number=first_number,
+        takes_own_utc=config.autopilot.utc is UtcOf.COMPUTER,
     )
-    session.clock_sync.takes_own_utc = config.autopilot.utc is UtcOf.COMPUTER
     if recorder is not None:
         return RecordingNode(
             system, keys, session, recorder, dry_run=dry_run, publishes=publishes, is_component=is_component

@@ -27,6 +27,7 @@ from link.mavlink.statistics import SessionStatistics
 from link.mavlink.streams import StreamRequests
 from link.mavlink.timesync import ClockSync, boot_time_ns
 
+_COMPONENT_ID = mavlink.MAV_COMP_ID_ONBOARD_COMPUTER
 _INTERVAL = Retries(attempts=3)  # of one message's interval, before the next one has its turn
 
 
@@ -34,31 +35,31 @@ class MavlinkSession:
     """One conversation with one autopilot.
 
     Args:
-        system_id: our own, the vehicle's.
-        component_id: our own, 191 for an onboard computer.
+        system_id: our own, the vehicle's; we are its component 191, an onboard computer.
         target_system_id: of the autopilot; None takes the first that is heard.
         signing: signs what is sent and refuses what is not signed rightly; None for a link without a key.
         records_input: keep the frames received for `take_input`.
         first_number: of the sequence sent; another one of our address that begins elsewhere is told from an echo.
+        takes_own_utc: UTC is what the local clock shows, not what the autopilot tells.
     """
 
     def __init__(
         self,
         system_id: int,
-        component_id: int = mavlink.MAV_COMP_ID_ONBOARD_COMPUTER,
         target_system_id: int | None = None,
         signing: Signing | None = None,
         *,
         records_input: bool = False,
         first_number: int = 0,
+        takes_own_utc: bool = False,
     ) -> None:
         self._signing = signing
         self._codec = MavlinkCodec(
-            system_id, component_id, records_input=records_input, signing=signing, first_number=first_number
+            system_id, _COMPONENT_ID, records_input=records_input, signing=signing, first_number=first_number
         )
-        self._peer = Peer(Address(system_id, component_id), target_system_id)
+        self._peer = Peer(Address(system_id, _COMPONENT_ID), target_system_id)
         self._restarts = RestartWatch()
-        self.clock_sync = ClockSync()
+        self.clock_sync = ClockSync(takes_own_utc=takes_own_utc)
         self._commands = CommandSender(self._send_command)
         self._streams = StreamRequests(self._command_stream)
         self._parameters = ParameterReader(self._send_parameter_request)

@@ -61,17 +61,20 @@ def _is_boot_time(tc1_ns: int) -> bool:
 class ClockSync:
     """The exchange of times with the autopilot.
 
-    Attributes:
+    Args:
         takes_own_utc: UTC is what the local clock shows, not what SYSTEM_TIME tells.
+
+    Attributes:
         clock: what is known of the clocks.
         round_trips: answers used.
         answered_ns: local time at which the newest question that was answered had been asked, None before the first.
-        answering_since_ns: local time since which answers have come without a gap as above, None before the first.
+        answering_since_ns: local time since which answers have come without a gap of `ANSWER_GAP_S`, None before the
+            first.
         asks_often: to know from instant to instant that the autopilot hears. Of these answers the clocks learn nothing.
     """
 
-    def __init__(self) -> None:
-        self.takes_own_utc = False
+    def __init__(self, *, takes_own_utc: bool = False) -> None:
+        self._takes_own_utc = takes_own_utc
         self.clock = ClockMap()
         self.round_trips = 0
         self.answered_ns: int | None = None
@@ -123,7 +126,7 @@ class ClockSync:
     def system_time(self, message: Message) -> None:
         """Takes a SYSTEM_TIME."""
         boot_ns = message.time_boot_ms * 1_000_000
-        unix_ns = self.clock.boot_to_local_ns(boot_ns) if self.takes_own_utc else message.time_unix_usec * 1000
+        unix_ns = self.clock.boot_to_local_ns(boot_ns) if self._takes_own_utc else message.time_unix_usec * 1000
         if unix_ns is not None:
             self.clock = with_system_time(self.clock, boot_ns, unix_ns, _CLOCK)
 
