@@ -18,6 +18,7 @@ from msgspec import Struct
 
 from companion.core.data import Array
 from companion.vehicle.pad import PadPath
+from link.frames.rotations import wrap_angle
 from link.messages import StationFrame, Vector3
 
 _SLOW_M_S = 1.0  # slower than this a course is known to no better than 0.1 rad from velocities of 0.1 m/s
@@ -136,7 +137,7 @@ def _next_place(here: Array, wanted_m: Array, keep_out: KeepOut, dt_s: float, ra
         return _towards(here, np.array([*side, max(float(wanted_m[2]), keep_out.over_m)]), dt_s, rates)
     speed_m_s = min(math.sqrt(acceleration_m_s2 * radius_m), speed_max_m_s)
     angle_rad = math.atan2(here[1], here[0])
-    turn_rad = (math.atan2(wanted_m[1], wanted_m[0]) - angle_rad + math.pi) % (2.0 * math.pi) - math.pi
+    turn_rad = wrap_angle(math.atan2(wanted_m[1], wanted_m[0]) - angle_rad)
     step_m = speed_m_s * dt_s
     angle_rad += min(max(turn_rad, -step_m / radius_m), step_m / radius_m)
     radius_m += min(max(aim_radius_m - radius_m, -step_m), step_m)

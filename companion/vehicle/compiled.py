@@ -5,6 +5,7 @@ from pathlib import Path
 from link.compiled import file_digest, kept_kernel
 
 FILES = (
+    "angle.py",
     "lever.py",
     "shake.py",
     "small_matrices.py",

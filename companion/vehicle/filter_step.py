@@ -34,11 +34,6 @@ def squared_norm(innovation: Array, covariance: Array) -> float:
     return float(innovation @ np.linalg.solve(covariance, innovation))
 
 
-def wrapped(angle_rad: float) -> float:
-    """Return the angle in [-pi, pi)."""
-    return (angle_rad + math.pi) % (2.0 * math.pi) - math.pi
-
-
 def std_of(variance: float) -> float:
     """Return the standard deviation, NaN where data that contradict each other have left no variance."""
     return math.sqrt(variance) if variance >= 0.0 else math.nan

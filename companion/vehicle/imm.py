@@ -21,8 +21,9 @@ from companion.vehicle import imm_forecast as forecasts
 from companion.vehicle import imm_judgement as judgement
 from companion.vehicle import imm_mixing as mixing
 from companion.vehicle import steady_driving
+from companion.vehicle.angle import short_way_round
 from companion.vehicle.deck_motion import passed
-from companion.vehicle.filter_step import Update, std_of, wrapped
+from companion.vehicle.filter_step import Update, std_of
 from companion.vehicle.imm_body import (
     MOTIONS,
     learnt_body,
@@ -172,7 +173,7 @@ class ImmModel:
             velocity_enu_m_s=told[3:6],
             acceleration_enu_m_s2=told[6:],
             covariance=0.5 * (covariance + covariance.T),
-            yaw_rad=wrapped(float(x[HEADING])) if known else None,
+            yaw_rad=short_way_round(float(x[HEADING])) if known else None,
             yaw_rate_rad_s=float(x[CURVATURE] * math.hypot(x[2], x[3])) + state.spin.rad_s if known else None,
             mixture=Mixture(weight=state.modes[2], off=pad_off, covariance=pad_covariance),
         )

@@ -8,6 +8,7 @@ import math
 import numpy as np
 
 from companion.core.data import Array
+from companion.vehicle.angle import short_way_round
 from companion.vehicle.compiled import compiled_kernel
 from companion.vehicle.imm_kernels import HEADING as HEADING_STATE
 from companion.vehicle.imm_kernels import UNKNOWN_HEADING_VARIANCE
@@ -26,7 +27,7 @@ def residual_of(kind: int, value: Array, expected: Array) -> Array:
     """Return measured minus expected, the short way round for angles."""
     residual = value - expected
     if kind in (HEADING, COURSE):
-        residual[0] = (residual[0] + math.pi) % (2.0 * math.pi) - math.pi
+        residual[0] = short_way_round(residual[0])
     return residual
 
 

@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from companion.core.data import Array
+from companion.vehicle.angle import short_way_round
 from companion.vehicle.compiled import compiled_kernel
 
 
@@ -31,7 +32,7 @@ def turned_lever(
     n = len(yaw_rad)
     turn_rad, step_s = np.empty(n - 1), np.diff(offset_s)
     for i in range(n - 1):
-        turn_rad[i] = (yaw_rad[i + 1] - yaw_rad[i] + math.pi) % (2.0 * math.pi) - math.pi
+        turn_rad[i] = short_way_round(yaw_rad[i + 1] - yaw_rad[i])
     arm, swing = np.zeros((n, 3)), np.zeros((n, 3))
     for i in range(n):
         arm[i, 0], arm[i, 1] = turned(lever_x_m, lever_y_m, yaw_rad[i])

@@ -9,6 +9,7 @@ import math
 from collections.abc import Sequence
 
 from companion.core.data import STEP_MAX_S
+from link.frames.rotations import wrap_angle
 
 _WINDOW_S = 1.0
 _TURN_MIN_RAD = 0.1  # in a window, below which it shows nothing: a rate's own offset is 0.02 rad/s
@@ -42,7 +43,7 @@ class TurnWatch:
             return
         self._lasted_s += passed_s
         self._told_rad += rate_rad_s * passed_s
-        self._turned_rad += math.remainder(yaw_rad - before[1], math.tau)
+        self._turned_rad += wrap_angle(yaw_rad - before[1])
         if self._lasted_s >= _WINDOW_S:
             self._close(variance_rad2)
 

@@ -14,7 +14,8 @@ from filterpy.kalman import MerweScaledSigmaPoints, UnscentedKalmanFilter
 
 from companion.config.estimation import LkfConfig, UkfConfig
 from companion.core.data import Array, Forecast, Measurement, Quantity, VehicleEstimate
-from companion.vehicle.filter_step import Gaussian, Update, squared_norm, symmetric, wrapped
+from companion.vehicle.angle import short_way_round
+from companion.vehicle.filter_step import Gaussian, Update, squared_norm, symmetric
 from companion.vehicle.lkf import LkfModel, WhiteJerkNoise
 from companion.vehicle.ukf_motion import SIZE, drive, drive_all, kinematics, process_noise, track_variance
 from link.records import replace
@@ -137,7 +138,7 @@ class UkfModel:
             velocity_enu_m_s=mean[3:6],
             acceleration_enu_m_s2=mean[6:],
             covariance=symmetric(spread.T @ spread / len(spread)),
-            yaw_rad=wrapped(float(state.mean[2])),
+            yaw_rad=short_way_round(float(state.mean[2])),
             yaw_rate_rad_s=float(state.mean[3] * state.mean[5]),
         )
 
@@ -170,7 +171,7 @@ class UkfModel:
     def _update_car(self, state: Car, measurement: Measurement) -> Update[UkfState]:
         value = measurement.value
         if measurement.quantity is Quantity.HEADING:
-            value = np.array([state.mean[2] + wrapped(float(value[0] - state.mean[2]))])
+            value = np.array([state.mean[2] + short_way_round(float(value[0] - state.mean[2]))])
         scratch = self._scratch
         scratch.x, scratch.P = state.mean, state.covariance
         scratch.sigmas_f = self._points.sigma_points(state.mean, state.covariance)
