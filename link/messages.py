@@ -185,9 +185,9 @@ class ContactForecast(Struct, frozen=True, kw_only=True):
         unsafe: one beyond those of S1.
         broken_off: none, since the drone waits or breaks off before.
         misses_position: unsafe, and the place is farthest beyond its limit.
-        misses_speed: likewise, the horizontal speed against the deck.
-        misses_sink: likewise, the sink rate.
-        misses_tilt: likewise, the tilt.
+        misses_speed: unsafe, and the horizontal speed against the deck is.
+        misses_sink: unsafe, and the sink rate is.
+        misses_tilt: unsafe, and the tilt is.
     """
 
     in_s: float | None

@@ -117,7 +117,7 @@ class RangeConfig(RangeLimits):
 
     white_m: NotNegative = 0.0  # of a reading
     min_m: RangeEnd = 0.0  # of its range; what is nearer or farther is told as the range's end
-    max_m: RangeEnd = 100.0  # likewise
+    max_m: RangeEnd = 100.0  # of its range
 
 
 class SensorsConfig(StrictModel):

@@ -40,7 +40,7 @@ RATE_LAG_S = 0.05
 POSITION_STD_M = 0.04
 """Of a report's position beside the path: a receiver with corrections, and 4 ms of its date at 8 m/s."""
 VELOCITY_STD_M_S = 0.1
-"""Likewise of its velocity."""
+"""Of a report's velocity."""
 REPORT_PERIOD_S = 0.02
 STATES = 4
 _ONE = np.eye(STATES)
@@ -99,7 +99,7 @@ class Cascade(Struct, frozen=True, kw_only=True):
 
     @property
     def stiffness_per_s2(self) -> float:
-        """Likewise by the position's."""
+        """Acceleration that is leaned for, by the position's error."""
         return self.damping_per_s * self.position_per_s
 
     def lead(self, acceleration_m_s2: Array, jerk_m_s3: Array) -> Array:

@@ -15,9 +15,9 @@ MOTION = ("LOCAL_POSITION_NED", "ATTITUDE_QUATERNION")
 _MOTION_RATE_MIN_HZ = 40.0
 _LATENCY_MAX_S = 0.1
 _CLOCK_STD_MAX_S = 0.02
-_UTC_OFF_MAX_S = 0.02  # likewise, and what NTP keeps a computer to on a network
+_UTC_OFF_MAX_S = 0.02  # what NTP keeps a computer to on a network
 _BATTERY_SPARE = 0.1  # beyond what no landing is begun below
-_BATTERY_GOOD = 0.3  # likewise
+_BATTERY_GOOD = 0.3  # beyond what no landing is begun below
 
 
 def assess(

@@ -19,7 +19,7 @@ class Firmware:
         kind: what a configuration calls it.
         oldest: release that is known to work.
         rules: of its parameters, but for the one that limits the descent.
-        launch: likewise, for a launch from the deck of a vehicle that drives; of the same parameter they ask for more.
+        launch: rules for a launch from the deck of a vehicle that drives; of the same parameter they ask for more.
         sink: names of the descent's.
     """
 

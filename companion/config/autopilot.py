@@ -28,7 +28,7 @@ class PadOnMap(Enum):
 
     NONE = "none"
     FOLLOW_TARGET = "follow_target"  # which an autopilot heeds in its follow mode only
-    ADSB = "adsb"  # likewise, and as a vehicle among the traffic, which all ground stations draw
+    ADSB = "adsb"  # FOLLOW_TARGET, and a vehicle among the traffic, which all ground stations draw
 
 
 class UtcOf(Enum):

@@ -130,7 +130,7 @@ class SwayConfig(StrictModel):
     """How the body of a vehicle on wheels sways that does not tell its tilt, and that nobody has watched yet."""
 
     tilt_std_rad: Positive = 0.002  # 5 mm of height from axle to axle: on smooth asphalt
-    heave_std_m: Positive = 0.005  # likewise
+    heave_std_m: Positive = 0.005  # up and down, on smooth asphalt
     frequency_hz: Positive = 1.5  # at which bodies pitch and roll on their wheels (Gillespie 1992, chapter 5)
     # Of the softest springs, and of a road whose waves sway a body themselves. What is slower than 0.25 Hz does not
     # show in the 8 s for which an antenna is watched.

@@ -50,8 +50,9 @@ class TouchdownConfig(StrictModel):
     height_max_m: Positive = 0.35  # estimated height over the pad at which a contact is believed
     blocked_depth_m: Positive = 0.06  # how far the setpoint has sunk below the drone
     blocked_speed_m_s: Positive = 0.2  # relative vertical speed that counts as standing
-    # Likewise where it is pressed down and the range finder sees the pad at its feet; and the sink rate at which a
-    # drone that is pressed down in the air is seen to fall: signs have to agree until it would have it.
+    # Relative vertical speed that counts as standing where the drone is pressed down and the range finder sees the pad
+    # at its feet. A drone that is pressed down in the air is seen to fall at this sink rate: the signs of a contact
+    # have to agree until it would have come to it.
     pressed_speed_m_s: Positive = 0.5
     falling_acceleration_m_s2: Positive = 3.5  # downwards faster than this nothing stands on a pad; half of the presses
     # Horizontally: no flying changes the velocity so fast, and no hold is waited for. Thrust of twice the weight and

@@ -75,7 +75,7 @@ class VehicleEstimate(Struct, frozen=True, kw_only=True, eq=False):
         acceleration_enu_m_s2: (3,) in W.
         covariance: (9, 9) of position, velocity, acceleration, in that order.
         yaw_rad: heading of V about W's z, None while it cannot be told (at rest, never measured).
-        yaw_rate_rad_s: None likewise.
+        yaw_rate_rad_s: of V about W's z, None while it cannot be told.
         mixture: what each of several models holds of the pad's centre; None of a single one.
     """
 

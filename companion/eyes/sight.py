@@ -65,7 +65,7 @@ class Sight:
 
     Attributes:
         sighting: of the pad, None where it was not seen.
-        pose: of the board in the camera, None likewise.
+        pose: of the board in the camera, None where it was not seen.
         tags: that the pose rests on.
         rms_px: of the edges' distances from it.
         tracked: it was found without a search.

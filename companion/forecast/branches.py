@@ -41,7 +41,7 @@ class Events(Struct, frozen=True, kw_only=True, eq=False):
 
     Attributes:
         kind: (n,) as `samples.Samples` has it.
-        event: (n, 4) likewise.
+        event: (n, 4) what happens, as `samples.Samples` has it.
         weight: (n,) probabilities, which make one.
     """
 

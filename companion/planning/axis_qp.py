@@ -7,7 +7,7 @@ with P of the infinite-horizon problem (algebraic Riccati equation). What bounds
 The prediction matrices are those of a triple integrator driven by jerk that is constant over blocks. State `x = [p, v,
 a]` in m, m/s, m/s^2; input the jerk `u` (m,) in m/s^3, one value per block of the horizon. At node time t after now,
 exactly, `p = p0 + v0 t + a0 t^2/2 + sum_i u_i (c3(t - b_i) - c3(t - e_i))`, `c3(x) = max(x, 0)^3 / 6`, for the block
-from `b_i` to `e_i`; likewise v with `c2(x) = max(x, 0)^2 / 2` and a with `c1(x) = max(x, 0)`.
+from `b_i` to `e_i`. v has `c2(x) = max(x, 0)^2 / 2` in place of `c3`, and a has `c1(x) = max(x, 0)`.
 """
 
 import math
@@ -25,7 +25,7 @@ from companion.planning.following import Following, deviations
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class AxisModel:
-    """Predictions at n nodes from the state now and m moves: `p = free_p @ x + forced_p @ u`, likewise v and a.
+    """Predictions at n nodes from the state now and m moves: `p = free_p @ x + forced_p @ u`; v and a have their own.
 
     Attributes:
         move_s: (m,) durations of the blocks.

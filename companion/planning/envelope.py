@@ -3,8 +3,8 @@
 Bounds are widened just enough for such a state to come back as fast as it can. The widened speed bound is the speed
 that is left when acceleration is turned against the velocity with nearly all of the jerk and then held at nearly all of
 the acceleration limit; the widened acceleration bound falls with the jerk; the lowered floor is the height reached by
-pulling up likewise, at no more than the climb limit. The floor bounds the height that the rate carries on: what sinks
-slows down towards it.
+pulling up with nearly all of the jerk and of the acceleration, at no more than the climb limit. The floor bounds the
+height that the rate carries on: what sinks slows down towards it.
 
 A norm `|w| <= c` of both horizontal axes is a polygon: `n w <= b` along `DIRECTIONS` unit vectors n, both ways. The
 polygons of acceleration and jerk are inscribed in the circle, corners on the axes: an axis may use the whole norm, no

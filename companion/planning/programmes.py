@@ -182,7 +182,7 @@ def plan_of(frame: Array, level: Array, vertical: Array, maps: Array, path: Arra
     Args:
         frame: as `Posed` has it.
         level: (2 m + s,) the moves of the major axis and of the minor one, then slacks.
-        vertical: (m + s,) likewise of the vertical axis.
+        vertical: (m + s,) the moves of the vertical axis, then slacks.
         maps: (3 + m, 3 k) from the state and the moves to p, v, a at k instants.
         path: (3, k, 3) where position, velocity and acceleration in W are written.
     """

@@ -50,7 +50,7 @@ class Resampler:
         return np.ascontiguousarray(position), np.ascontiguousarray(velocity), np.ascontiguousarray(acceleration)
 
     def taken_line(self, samples: Array) -> Array:
-        """Return `samples` (n,) likewise.
+        """Return `samples` (n,) as compiled functions take them, in one piece: no index is checked there.
 
         Raises:
             ValueError: if they are not one for each offset.

@@ -34,7 +34,7 @@ class Event(Enum):
     """What may move the landing from one phase to another."""
 
     START = "start"  # an operator's command
-    START_AGAIN = "start again"  # likewise, while the autopilot's mode is not the companion's or its motors are off
+    START_AGAIN = "start again"  # START while the autopilot's mode is not the companion's or its motors are off
     ABORT = "abort"  # an operator's command
     HOLD = "hold"  # an operator's command
     LAUNCH = "launch"  # an operator's command

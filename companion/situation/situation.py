@@ -22,7 +22,7 @@ class Drone(Struct, frozen=True, kw_only=True, eq=False):
         yaw_rad: heading of B about W's z.
         age_s: of the report.
         acceleration_up_m_s2: from the last reports, None before there are enough.
-        jolt_m_s2: size of the horizontal acceleration, likewise.
+        jolt_m_s2: size of the horizontal acceleration from the last reports, None before there are enough.
         lean: sine of its tilt.
         lean_rate_hz: by which that grows.
         attitude_known: no older than a report may be.

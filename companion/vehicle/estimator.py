@@ -147,7 +147,7 @@ class BufferHealth(Struct, frozen=True, kw_only=True):
 
     Attributes:
         accepted: of each of `QUANTITIES`.
-        rejected: as outliers, likewise; those that the filter was opened to among them.
+        rejected: of each of `QUANTITIES`, as outliers; those that the filter was opened to among them.
         late: dropped, older than the buffer.
         recoveries: times the filter was opened to data it had rejected for too long.
         nis_per_dof: mean over the whole run, 1 for a consistent filter; None before the second measurement.

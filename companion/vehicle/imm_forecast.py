@@ -179,7 +179,7 @@ def describe_modes(modes: Modes, motion: Array, known_variance: float) -> tuple[
     Args:
         modes: the filter.
         motion: its numbers.
-        known_variance: as above.
+        known_variance: of a heading that is known, rad^2; without one the lever arm has no direction.
 
     Returns:
         The mean (26,); position, velocity and acceleration (9,) and their covariance (9, 9); and the variance of the
@@ -201,7 +201,7 @@ def describe_pad(modes: Modes, motion: Array, known_variance: float) -> tuple[Ar
     Args:
         modes: the filter.
         motion: its numbers.
-        known_variance: as above.
+        known_variance: of a heading that is known, rad^2; without one the lever arm has no direction.
     """
     lever = with_direction(motion, modes, known_variance)[5:8]
     means, covariances, weights = modes

@@ -113,7 +113,7 @@ def align_modes(means: Array, covariances: Array, course: Array) -> tuple[Array,
 
     Args:
         means: (n, 26) of the modes.
-        covariances: (n, 26, 26) likewise.
+        covariances: (n, 26, 26) of the modes.
         course: (4,) speed from which on a course is one, m/s, variances of the heading about it and of a heading that
             is known, rad^2, and 1 where sensors tell the heading or how it turns.
     """

@@ -68,8 +68,8 @@ def mix(modes: Modes, unchanged: float, begun: Array) -> Modes:
 
     Args:
         modes: the filter before; its weights add up to one.
-        unchanged: probability, as `switching` has it.
-        begun: probabilities (n,), likewise.
+        unchanged: probability that no mode has begun, as `switching` has it.
+        begun: (n,) probabilities that each mode is the one that began last, as `switching` has them.
     """
     means, covariances, weights = modes
     n = len(weights)

@@ -198,7 +198,7 @@ def _getter(names: list[str]) -> Callable[[Message], tuple[Any, ...]]:
 
 
 def _chooser(places: list[int | slice]) -> Callable[[tuple[Any, ...]], tuple[Any, ...]]:
-    """Return what gives the values at these places, as above."""
+    """Return what gives the values at these places, of which `itemgetter` does not make a tuple when there is one."""
     choose = itemgetter(*places)
     return choose if len(places) > 1 else lambda values: (choose(values),)
 

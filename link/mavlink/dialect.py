@@ -192,7 +192,7 @@ mavlink.mavlink_map.update(DRAFT_MESSAGES)
 COMMAND_CANCEL_ID, COMPONENT_INFORMATION_BASIC_ID, COMPONENT_METADATA_ID = 80, 396, 397
 """Of drafts, which the dialect has no names for."""
 MAV_RESULT_CANCELLED = 6
-"""Likewise."""
+"""Of a draft, which the dialect has no name for."""
 
 
 _OFFSET_BASIS = 0x811C9DC5

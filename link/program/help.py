@@ -33,7 +33,7 @@ class App(typer.Typer):
         return _ungrouping(super().command(name, **kwargs))
 
     def callback(self, **kwargs: Any) -> Callable[[Command], Command]:
-        """Take what is done without a command, likewise."""
+        """Take what is done without a command, whose arguments may be groups of options."""
         return _ungrouping(super().callback(**kwargs))
 
 

@@ -45,7 +45,7 @@ class Sink(Protocol):
             OSError: it is not written.
             ValueError: it cannot be written.
             ArithmeticError: one of its numbers is too large for its field.
-            struct.error: likewise.
+            struct.error: one of its numbers does not fit its field.
         """
 
     def close(self) -> None:

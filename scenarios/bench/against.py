@@ -32,7 +32,7 @@ class Pair:
     Attributes:
         seed: of everything random.
         cpu_s: processor time there and here.
-        simulated_s: likewise, how long the runs were.
+        simulated_s: how long the runs were, there and here.
         is_same: whether the drone flew the same way to the last bit.
     """
 

@@ -29,7 +29,7 @@ def disturbances_before(scenario: Scenario, seed: int, at_s: float) -> Columns:
 
     Args:
         scenario: that was flown.
-        seed: likewise.
+        seed: of everything random in it.
         at_s: the instant, since the start of the simulation.
 
     Returns:

@@ -35,8 +35,8 @@ class Look:
 
     Attributes:
         light: one of `LIGHTS`.
-        range_m: as it was drawn.
-        angle_rad: likewise.
+        range_m: from the camera to the board, as it was drawn.
+        angle_rad: of the view off the board's normal, as it was drawn.
         has_board: whether the board was there to be seen.
         error_m: of the pad's middle.
         nees: of its position.

@@ -46,7 +46,7 @@ class FuzzResult:
 
     Attributes:
         link: its kind.
-        firmware: likewise.
+        firmware: that the simulated autopilot stands in for.
         frames: offered.
         received_share: of the bytes offered, what arrived.
         known_messages: among them, with a right checksum.

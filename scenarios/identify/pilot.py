@@ -47,7 +47,7 @@ class Flight:
         position_m: (n, 3) in W, from where the first manoeuvre began.
         velocity_m_s: (n, 3) as it reported.
         cascade: its gains, by its parameters.
-        shaping: its path's limits likewise, None if it has none.
+        shaping: its path's limits, by its parameters; None if it has none.
     """
 
     autopilot: str

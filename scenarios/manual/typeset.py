@@ -9,8 +9,8 @@ from xml.etree.ElementTree import Element
 
 from latex2mathml.converter import convert
 from markdown import Markdown  # type: ignore[import-untyped]  # it has no annotations
-from markdown.extensions import Extension  # type: ignore[import-untyped]  # likewise
-from markdown.inlinepatterns import InlineProcessor  # type: ignore[import-untyped]  # likewise
+from markdown.extensions import Extension  # type: ignore[import-untyped]
+from markdown.inlinepatterns import InlineProcessor  # type: ignore[import-untyped]
 
 _ABOVE_ESCAPES = 185  # code has 190, backslashes 180
 _SHOWN = r"\$\$(.+?)\$\$"

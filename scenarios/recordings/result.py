@@ -42,7 +42,7 @@ def result_table(
 
     Args:
         scenario: that was flown.
-        seed: likewise.
+        seed: of everything random in it.
         recording: of the flight.
         ended: why it did.
         rules: the scenario's unless others are given.

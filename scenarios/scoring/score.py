@@ -87,8 +87,8 @@ def score(
 
     Args:
         drone: its truth in order of time, 100 Hz.
-        vehicle: likewise.
-        rotors: likewise; empty when unknown, and then S3 cannot be reached.
+        vehicle: its truth in order of time, 100 Hz.
+        rotors: their truth in order of time, 100 Hz; empty when unknown, and then S3 cannot be reached.
         rules: geometry, airframe and the rest.
         started_ns: start of the manoeuvre; None is the vehicle's closest approach to the waiting point.
         faults: what made the run unsafe and cannot be seen in truth, such as fighting the pilot.

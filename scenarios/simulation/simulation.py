@@ -31,8 +31,8 @@ class SimulationOutputs(Struct, frozen=True, kw_only=True):
         mavlink: bytes of the autopilot.
         publications: of the vehicle and its sensors.
         drone: its truth at the end of the step.
-        rotors: likewise.
-        vehicle: likewise.
+        rotors: the drone's, at the end of the step.
+        vehicle: its truth at the end of the step.
     """
 
     mavlink: bytes

@@ -35,8 +35,8 @@ class SortieScore:
         ended: the phase that it ended in.
         reason: what the companion said last.
         contacts: samples of 10 ms with a contact between lift-off and descent; None where nothing was flown.
-        error_straight_m: of the station, RMS; None without such a time.
-        error_bend_m: likewise.
+        error_straight_m: of the station while the vehicle drove straight, RMS; None where it never did.
+        error_bend_m: of the station while the vehicle turned, RMS; None where it never did.
         error_max_m: the largest, of both.
         error_by_station_m: RMS at each station in the order of the commands; None for one that was not kept.
         moved_m: the farthest that a station was kept from where it was ordered; None where none was kept.

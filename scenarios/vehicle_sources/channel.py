@@ -9,7 +9,7 @@ from link.transports.opening import open_transport
 from link.transports.transport import Transport
 
 GPSD_PORT = 2947  # registered
-_NMEA_PORT = 10110  # likewise
+_NMEA_PORT = 10110  # registered
 _NMEA_BAUD = 9600  # receivers' most frequent setting; NMEA 0183's own is 4800
 _CHUNK_BYTES = 4096
 

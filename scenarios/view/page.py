@@ -172,7 +172,7 @@ def open_server(port: int) -> viser.ViserServer:
         with redirect_stdout(io.StringIO()):  # it has a banner of its own
             return viser.ViserServer(host=_LOOPBACK, port=port, verbose=False)
     finally:  # for everybody else
-        websockets.asyncio.server.serve = plain  # type: ignore[misc]  # likewise
+        websockets.asyncio.server.serve = plain  # type: ignore[misc]  # a module's function
 
 
 def _serving(serve: Callable[..., Any], page: bytes) -> Callable[..., Any]:

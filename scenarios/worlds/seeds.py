@@ -29,7 +29,7 @@ class FlownRange(StrictModel):
         first_seed: the others follow.
         seeds: how many.
         release: of this project, that flew them.
-        commit: likewise.
+        commit: of this project, that flew them.
     """
 
     slice: str

@@ -59,7 +59,7 @@ def draw_world(slice: str, seed: Seed, *, chosen: Mapping[str, float] | None = N
     return world
 
 
-def quantities(slice: str, seed: Seed) -> tuple[str, ...]:  # noqa: A002 (likewise)
+def quantities(slice: str, seed: Seed) -> tuple[str, ...]:  # noqa: A002 (the domain's word)
     """Return the names of what the world of `seed` draws: of all that may be chosen.
 
     Raises:

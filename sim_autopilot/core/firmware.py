@@ -36,8 +36,8 @@ class Identity:
         custom_version: eight bytes of the commit.
         os_version: of the operating system; 0 is none.
         board_version: of the board.
-        uid: of the board, likewise.
-        uid2: the longer one.
+        uid: the board's number; 0 is none.
+        uid2: the board's longer number.
     """
 
     autopilot_id: int

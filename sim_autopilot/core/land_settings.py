@@ -47,8 +47,8 @@ class LandSettings:
         approach_m_s: sink rate high above home.
         descent_m_s: near the ground.
         slow_below_m: above home, where near the ground begins.
-        precision: by LANDING_TARGET.
-        target: likewise, of a mode of its own.
+        precision: by LANDING_TARGET, in the mode that lands.
+        target: by LANDING_TARGET, in a mode of its own.
     """
 
     approach_m_s: float
@@ -65,7 +65,7 @@ class LandDetectorSettings:
     Attributes:
         after_s: how long the signs of a landing must hold.
         speed_max_m_s: horizontal, over ground, above which no landing is detected.
-        sink_max_m_s: vertical likewise.
+        sink_max_m_s: vertical, over ground, above which no landing is detected.
         sink_asked_m_s: least downward velocity setpoint of a landing.
         tilt_max_rad: a drone that is asked to lean farther is not landed; None does not look.
         acceleration_max_m_s2: nor one that accelerates more; None does not look.

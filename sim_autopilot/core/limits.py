@@ -51,7 +51,7 @@ class PositionGains:
 
     Attributes:
         level: horizontally.
-        vertical: likewise.
+        vertical: upwards and downwards.
         observer_rad_s: pole of the observer of what disturbs, on axes that have no integral.
         derives_error: whether the slope is that of the velocity's error, else of the velocity alone.
         error_cutoff_hz: of the low-pass filter on the velocity's error; None is none.
@@ -74,8 +74,8 @@ class PathLimits:
 
     Attributes:
         speed_m_s: horizontal, of corrections and of flight to a bare position.
-        climb_m_s: upwards likewise.
-        descent_m_s: downwards likewise.
+        climb_m_s: upwards, of corrections and of flight to a bare position.
+        descent_m_s: downwards, of corrections and of flight to a bare position.
         acceleration_m_s2: horizontal, of corrections.
         vertical_acceleration_m_s2: of corrections.
         jerk_m_s3: horizontal, of everything.

@@ -13,9 +13,9 @@ class StickFeel:
     Attributes:
         speed_m_s: horizontal, of the position modes.
         climb_m_s: upwards, of the modes that hold their height; None is the flight's own limit.
-        descent_m_s: downwards likewise.
+        descent_m_s: downwards, of the modes that hold their height; None is the flight's own limit.
         acceleration_m_s2: horizontal, of the position modes; None is the flight's own.
-        lift_m_s2: vertical likewise.
+        lift_m_s2: vertical, of the modes that hold their height; None is the flight's own.
         tilt_rad: of the modes that lean.
         yaw_rate_rad_s: of all but acro.
         acro_rate_rad_s: of acro, about each axis.

@@ -23,7 +23,7 @@ class Airframe:
         motor_time_constant_s: first-order lag of the rotor speed; None is no lag.
         thrust_to_weight: of all rotors at full speed; None is no limit, on either side.
         drag_n_s_m: linear drag on airspeed, equal in all directions.
-        drag_n_s2_m2: quadratic drag likewise.
+        drag_n_s2_m2: quadratic drag on airspeed, equal in all directions.
     """
 
     mass_kg: float = 1.507

@@ -69,7 +69,7 @@ class OwnStateConfig(StrictModel):
 
     position_std_m: NotNegative = 0.0  # on each axis
     height_std_m: NotNegative | None = None  # of the height, a barometer's; None: as on the others
-    velocity_std_m_s: NotNegative = 0.0  # likewise
+    velocity_std_m_s: NotNegative = 0.0  # on each axis
     # What its receiver states, horizontally; None: as well as the drone knows its place, but for a centimetre.
     receiver_accuracy_m: Positive | None = None
     position_time_s: Positive = 10.0  # of both errors' memory; sim_autopilot/plant/own_state.py says why
@@ -97,7 +97,7 @@ class RangeFinderConfig(RangeLimits):
 
     white_std_m: NotNegative = 0.0  # of a reading
     min_m: RangeEnd = 0.0  # of its range; what is nearer or farther is told as the range's end
-    max_m: RangeEnd = 100.0  # likewise
+    max_m: RangeEnd = 100.0  # of its range
 
 
 class VehicleConfig(StrictModel):

@@ -25,7 +25,7 @@ class Verdict(Enum):
 
     AIRBORNE = "airborne"
     DISPUTED = "disputed"  # a contact but for the range finder
-    AT_EDGE = "at edge"  # likewise, and the range finder sees the road beside the vehicle
+    AT_EDGE = "at edge"  # a contact but for the range finder, which sees the road beside the vehicle
     CONTACT = "contact"
 
 

@@ -21,7 +21,7 @@ class Signs(Struct, frozen=True, kw_only=True):
         acceleration_up_m_s2: of the drone.
         setpoint_below_m: how far the setpoint has sunk below the lowest foot, beyond how it flew before.
         range_height_m: of the feet above what the range finder sees.
-        range_carried_m: likewise, from when it last saw something, by what the drone has sunk since.
+        range_carried_m: the last such height that it saw, less what the drone has sunk since.
         landed: the autopilot's own word.
         pad_half_width_m: from the pad's centre to its nearest edge.
         passed_m: least horizontal distance from the pad's centre within the time that a jolt is seen for.

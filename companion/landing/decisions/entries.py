@@ -136,7 +136,7 @@ HEADING_LOST = Condition(
     is_true=has_lost_heading,
     anew_max=lambda c: c.descent.unseen.anew_max,
 )
-"""Without a hold time likewise. A bend, or the next straight, shows the heading again."""
+"""Without a hold time, or it slips below. A bend, or the next straight, shows the heading again."""
 
 NOT_SEEN = Condition(
     reason=Reason.PAD_NOT_SEEN,

@@ -20,7 +20,7 @@ class ItemRules:
         commands: of missions, besides those that both take.
         frames: of places, besides those that both take.
         told_frames: in which MISSION_ITEM_INT tells a place, by the frame it was sent in.
-        told_fence_frame: of every place of a fence, likewise; 0 is its own.
+        told_fence_frame: in which MISSION_ITEM_INT tells every place of a fence; 0 is its own.
         needs_numbers: whether an item with a value that is no number is refused.
         keeps_little: whether of an item only what flies it is stored, and plans that make no sense are refused.
     """
