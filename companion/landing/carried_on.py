@@ -23,7 +23,7 @@ from msgspec import Struct
 from companion.autopilots.response import Shaping
 from companion.config.companion import CompanionConfig
 from companion.core.data import FlightLimits
-from companion.landing.decisions.feasibility import SPEED_SHARE_MIN
+from companion.landing.decisions.feasibility import catching_up_m_s
 from companion.landing.sortie.aims import station_speed_m_s
 from companion.landing.state.memory import StepMemory
 from companion.planning.guidance import ReferenceState
@@ -86,7 +86,7 @@ def limit_rates(
     """
     if shaping is None:
         return limits
-    speed_m_s = max(speed_carried_m_s(shaping), SPEED_SHARE_MIN * _followed_m_s(memory, situation))
+    speed_m_s = max(speed_carried_m_s(shaping), catching_up_m_s(_followed_m_s(memory, situation), config))
     limits = replace(limits, speed_max_m_s=min(limits.speed_max_m_s, speed_m_s))
     pad, drone, lowest_m = situation.pad, memory.model.reference, _lowest_enu_m(memory, situation, config)
     if lowest_m is None or pad is None or drone is None:

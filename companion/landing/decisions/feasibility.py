@@ -26,9 +26,7 @@ from companion.situation.situation import Situation
 from companion.vehicle.pad_reach import is_too_small, pad_width_min_m
 from link.records import replace
 
-SPEED_SHARE_MIN = 1.15
-"""Of the vehicle's speed: with less there is nothing to catch up with, and no landing is begun."""
-
+_MORE_SHARE = 0.15  # of the vehicle's speed
 _RECEIVER_TOLD_S = 3.0  # it says so once a second
 _TOLD_M = 0.1  # what heights are told to
 _ROUNDING = 1e-6
@@ -45,6 +43,12 @@ def is_drone_taken(s: Situation, _: CompanionConfig) -> bool:
     return s.rival is not None and s.rival.is_this_drone
 
 
+def catching_up_m_s(vehicle_m_s: float, c: CompanionConfig) -> float:
+    """Return the least speed of a drone that catches up with a vehicle, m/s: with less no landing is begun."""
+    passes_m_s = c.chase.passing_distance_m / c.chase.catch_up_s  # by so much more a vehicle is caught that has passed
+    return vehicle_m_s + min(_MORE_SHARE * vehicle_m_s, passes_m_s)
+
+
 def _vehicle_speed_m_s(s: Situation) -> float:
     return 0.0 if s.pad is None else s.pad.ground_speed_m_s
 
@@ -52,14 +56,14 @@ def _vehicle_speed_m_s(s: Situation) -> float:
 def _is_too_fast(s: Situation, c: CompanionConfig) -> bool:
     if s.limits is None or is_fix_old(s, c):
         return False
-    return SPEED_SHARE_MIN * _vehicle_speed_m_s(s) > s.limits.speed_max_m_s
+    return catching_up_m_s(_vehicle_speed_m_s(s), c) > s.limits.speed_max_m_s
 
 
 def _too_fast(s: Situation, c: CompanionConfig) -> Cause:
     speed_m_s = _vehicle_speed_m_s(s)
     allowed_m_s = c.limits.speed_max_m_s if s.limits is None else s.limits.speed_max_m_s
     name = " or ".join(s.speed_limited_by) if allowed_m_s < c.limits.speed_max_m_s else "limits.speed_max_m_s"
-    return Cause(Reason.VEHICLE_TOO_FAST, (speed_m_s, SPEED_SHARE_MIN * speed_m_s, allowed_m_s, name))
+    return Cause(Reason.VEHICLE_TOO_FAST, (speed_m_s, catching_up_m_s(speed_m_s, c), allowed_m_s, name))
 
 
 def _way_m(s: Situation, c: CompanionConfig) -> float:

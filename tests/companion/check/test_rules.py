@@ -7,7 +7,8 @@ from hypothesis import strategies as st
 from companion.check.findings import Finding, Level, advised_values
 from companion.check.firmwares import FIRMWARES
 from companion.check.rules import SPEED_SHARE_ADVISED, ParameterRule, Spelling, judge, names_of
-from companion.landing.decisions.feasibility import SPEED_SHARE_MIN
+from companion.config.companion import CompanionConfig
+from companion.landing.decisions.feasibility import catching_up_m_s
 from link.mavlink.dialect import mavlink
 
 SINK_M_S = 1.2
@@ -146,8 +147,9 @@ def test_stopping_the_motors_for_a_lost_ground_station_is_a_failure(action: floa
     assert found["NAV_DLL_ACT"] is level
 
 
-def test_a_vehicle_that_a_check_advises_for_is_not_refused_in_flight() -> None:
-    assert SPEED_SHARE_ADVISED > SPEED_SHARE_MIN
+@pytest.mark.parametrize("vehicle_m_s", [0.5, 5.0, 20.0, 35.0])
+def test_a_vehicle_that_a_check_advises_for_is_not_refused_in_flight(vehicle_m_s: float) -> None:
+    assert SPEED_SHARE_ADVISED * vehicle_m_s > catching_up_m_s(vehicle_m_s, CompanionConfig())
 
 
 @pytest.mark.parametrize("autopilot_id", list(FIRMWARES))
