@@ -11,6 +11,8 @@ from link.program.toml_config import POSITIVE_MIN, StrictModel
 Positive = Annotated[float, Field(ge=POSITIVE_MIN, le=1e6)]
 NotNegative = Annotated[float, Field(ge=0.0, le=1e6)]
 Fraction = Annotated[float, Field(gt=0.0, lt=1.0)]
+PlannedTime = Annotated[float, Field(ge=0.01, le=10.0)]
+"""Longer than any approach takes is a mistake: with a shortest way of hours the drone arms and does not rise."""
 
 
 class GuidanceKind(Enum):
@@ -65,9 +67,9 @@ class MpcConfig(StrictModel):
     jerk_weight: Positive = 0.0003  # s^6/m^2; bandwidth (position / jerk weight)^(1/6) = 3.9 rad/s
     slack_weight: Positive = 1e3  # exact penalty on the largest excess over a soft limit
     # Over a pad a plan sinks at most at its height by this and `touchdown.sink_max_m_s`: 1 / `descent.sink.gain_hz`.
-    touch_time_s: Positive = 1.0
+    touch_time_s: PlannedTime = 1.0
     intercept_fraction: Fraction = 0.92  # of the acceleration limit that intercepts are planned with
-    intercept_time_min_s: Positive = 1.4  # shorter ways are slowed down to this: the law is linear near the target
+    intercept_time_min_s: PlannedTime = 1.4  # shorter ways are slowed down to this: the law is linear near the target
     axes_time_s: Positive = 1.0  # a relative speed turns the major axis like the distance it covers in this time
 
     @model_validator(mode="after")

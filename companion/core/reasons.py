@@ -132,7 +132,10 @@ class Reason(Enum):
         "SYSID_THISMAV, MAV_SYSID), and see --system-id"
     )
     VEHICLE_TAKEN = "{} lands on this vehicle, or stands on it: wait until it has gone"
-    STAMPS_LATE = "vehicle's fixes come {:.1f} s after their stamps: set its clock by GNSS or NTP, or use a faster link"
+    STAMPS_LATE = (
+        "vehicle's fixes come {:.2f} s after their stamps, abort.fix_age_max_s is {:g}: set its clock by GNSS or NTP, "
+        "or use a faster link"
+    )
     STAMPS_AHEAD = (
         "vehicle's fixes come {:.2f} s before their stamps: set its clock by GNSS or NTP, or the autopilot's; "
         "or the autopilot's link is too slow"

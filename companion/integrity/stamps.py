@@ -13,6 +13,7 @@ from msgspec import Struct
 
 from companion.config.companion import CompanionConfig
 from companion.core.data import FIXED_STD_MAX_M
+from companion.core.reasons import Cause, Reason
 from companion.integrity.way import WayError
 from companion.situation.situation import Situation
 from companion.vehicle.pad_reach import cone_radius_at_pad_m
@@ -24,6 +25,7 @@ _KNOWN_NS = 60_000_000_000  # after which nobody remembers another clock
 _RECENT_MIN, _EARLIER_MIN = 4, 10  # fixes
 _REFINED_S = 0.05  # by which the map to UTC may be refined at once
 
+_OF_STAMPS = frozenset({Reason.STAMPS_AHEAD, Reason.STAMPS_LATE})
 _OF_CLOCK = 0.5  # share of a step of the ages by which the places step along the way as well, or the link is slower
 
 
@@ -50,7 +52,8 @@ class FixStamps(Struct, frozen=True, kw_only=True):
 
     Attributes:
         newest_ns: when the newest accepted fix was taken, by its own stamp; None before the first.
-        age_on_arrival_s: of that fix, or of a newer refused one, when it came; not negative if both clocks are right.
+        age_on_arrival_s: of that fix, or of one that was refused since then, when it came; not negative if both clocks
+            are right.
         ages: the fixes of the last seconds; after a step, those before it.
         recent: the newest fixes, after a step; empty where there was none.
         stepped_s: by how much fixes are older since a clock was set, negative if younger; 0 where none was set.
@@ -71,7 +74,7 @@ def update_fix_stamps(
     t_ns: int,
     monotonic_ns: int,
     *,
-    early_s: float | None = None,
+    refused_age_s: float | None = None,
     way: WayError | None = None,
 ) -> FixStamps:
     """Return the stamps with the newest fix as it is known at `t_ns`.
@@ -81,11 +84,12 @@ def update_fix_stamps(
         newest_ns: stamp of the newest accepted fix.
         t_ns: now, UTC.
         monotonic_ns: now, for spans of time.
-        early_s: by which a newer one came before its stamp, too far to be accepted; None if none did.
+        refused_age_s: of another one when it came, by its stamp too far ahead or too old to be accepted; None if none
+            was.
         way: how it differs from what was expected; None where that is not known.
     """
-    if early_s is not None:
-        return replace(stamps, newest_ns=newest_ns, age_on_arrival_s=-early_s)
+    if refused_age_s is not None:
+        return replace(stamps, newest_ns=newest_ns, age_on_arrival_s=refused_age_s)
     if newest_ns == stamps.newest_ns:
         return stamps
     if newest_ns is None:
@@ -157,6 +161,11 @@ def _is_of_clock(stepped_s: float, ages: Ages) -> bool:
     """
     off_min_s = _OF_CLOCK * abs(stepped_s)
     return stepped_s != 0.0 and any(one.ahead_s is None or abs(one.ahead_s) > off_min_s for one in ages)
+
+
+def named_by_stamps(obstacle: Cause | None) -> Cause | None:
+    """Return the obstacle that says why fixes which come count for none: by their stamps they are old, or refused."""
+    return obstacle if obstacle is not None and obstacle.reason in _OF_STAMPS else None
 
 
 def is_stamped_ahead(s: Situation, c: CompanionConfig) -> bool:

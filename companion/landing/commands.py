@@ -6,6 +6,7 @@ from companion.config.autopilot import Guide
 from companion.config.companion import CompanionConfig
 from companion.core.reasons import Cause, Reason, sentence
 from companion.integrity.heights import VEHICLE_M
+from companion.integrity.stamps import named_by_stamps
 from companion.landing.decisions.aborts import why_unplaced
 from companion.landing.decisions.conditions import is_fix_old
 from companion.landing.sortie.aims import rally_point_enu_m
@@ -37,7 +38,7 @@ def missing_for_sortie(
     if config.autopilot.guide is Guide.PRECLAND:
         return Cause(Reason.GUIDES_ONLY)
     if s.pad is None or is_fix_old(s, config):
-        return Cause(Reason.NO_VEHICLE_DATA)
+        return named_by_stamps(obstacle) or Cause(Reason.NO_VEHICLE_DATA)
     match event:
         case Event.LAUNCH:
             return _missing_for_launch(s) or _unless_ground_is_deck(obstacle) or _rally_out_of_range(s, config)

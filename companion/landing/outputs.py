@@ -127,10 +127,10 @@ def _flown_by(phase: Phase, autopilot: AutopilotView) -> str:
 def _cause(memory: StepMemory, situation: Situation, config: CompanionConfig) -> Cause:
     """Return what the landing waits for, or why its phase began."""
     progress, not_placed = memory.progress, why_unplaced(situation)
+    if progress.phase in _NOT_BEGUN and progress.obstacle is not None:
+        return progress.obstacle  # a fault of the data also has the pad unplaced
     if progress.phase in _WAITING_FOR_PAD and not_placed is not None:
         return not_placed
-    if progress.phase in _NOT_BEGUN and progress.obstacle is not None:
-        return progress.obstacle
     in_phase_s = (situation.monotonic_ns - progress.since_ns) * 1e-9
     if progress.phase is Phase.TOUCHDOWN and in_phase_s > _STOPPED_WITHIN_S:
         return Cause(Reason.MOTORS_RUN, (in_phase_s,))

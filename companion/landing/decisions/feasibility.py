@@ -121,8 +121,8 @@ def _are_stamps_late(s: Situation, c: CompanionConfig) -> bool:
     return age_s is not None and age_s > c.abort.fix_age_max_s
 
 
-def _tell_stamped_late(s: Situation, _: CompanionConfig) -> Cause:
-    return Cause(Reason.STAMPS_LATE, (s.vehicle.fix_age_on_arrival_s or 0.0,))
+def _tell_stamped_late(s: Situation, c: CompanionConfig) -> Cause:
+    return Cause(Reason.STAMPS_LATE, (s.vehicle.fix_age_on_arrival_s or 0.0, c.abort.fix_age_max_s))
 
 
 def _is_id_shared(s: Situation, _: CompanionConfig) -> bool:

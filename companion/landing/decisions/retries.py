@@ -2,6 +2,7 @@
 
 from companion.config.companion import CompanionConfig
 from companion.core.reasons import Cause, Reason
+from companion.integrity.stamps import named_by_stamps
 from companion.landing.decisions.aborts import is_out_of_range, why_unplaced
 from companion.landing.decisions.conditions import (
     HEARD,
@@ -25,8 +26,6 @@ _LASTING = (
     Reason.ROAD_BELOW,
 )
 """What the drone looked with the first time is all that it has to look with."""
-
-_OF_STAMPS = frozenset({Reason.STAMPS_AHEAD, Reason.STAMPS_LATE})
 
 
 def end_climb(progress: Progress, s: Situation, config: CompanionConfig) -> Decision | None:
@@ -55,8 +54,8 @@ def _no_retry(progress: Progress, s: Situation, config: CompanionConfig) -> Caus
     }
     first = next((Cause(reason) for reason, holds_now in known.items() if holds_now), None)
     impossible = obstacle(progress.held, s, config)
-    if first == Cause(Reason.NO_VEHICLE_DATA) and impossible is not None and impossible.reason in _OF_STAMPS:
-        first = impossible  # they come, and are taken for old by their stamps, or refused for them
+    if first == Cause(Reason.NO_VEHICLE_DATA):
+        first = named_by_stamps(impossible) or first
     if not (is_heading_to_be_shown(s, config) and progress.cause.reason is not Reason.HEADING_UNKNOWN):
         first = first or why_unplaced(s)  # a heading that an alignment has waited for in vain is not waited for again
     if first is None and progress.cause.reason in _LASTING:

@@ -82,7 +82,7 @@ def update_vehicle(vehicle: VehicleMemory, inputs: StepInputs, system: System) -
             newest_fix_ns,
             inputs.t_ns,
             now_ns,
-            early_s=inputs.vehicle.fix_ahead_s,
+            refused_age_s=_refused_age_s(vehicle.fix_stamps, newest_fix_ns, inputs, system),
             way=way,
         ),
         contradictions=contradictions,
@@ -95,6 +95,21 @@ def update_vehicle(vehicle: VehicleMemory, inputs: StepInputs, system: System) -
             moves=inputs.autopilot.frame_moves,
         ),
     )
+
+
+def _refused_age_s(stamps: FixStamps, newest_fix_ns: int | None, inputs: StepInputs, system: System) -> float | None:
+    """Return how old a fix was as it came that is refused for its stamp, negative if that is ahead; None without one.
+
+    One that is older than what the estimator keeps tells of a clock that was set back, once no other is accepted.
+    """
+    if inputs.vehicle.fix_ahead_s is not None:
+        return -inputs.vehicle.fix_ahead_s
+    if newest_fix_ns is None or newest_fix_ns != stamps.newest_ns:
+        return None
+    told_ns = max((one.t_ns for one in inputs.vehicle.measurements if one.quantity is Quantity.POSITION), default=None)
+    if told_ns is None or newest_fix_ns - told_ns <= system.config.estimator.buffer.keep_s * 1e9:
+        return None
+    return (inputs.t_ns - told_ns) * 1e-9
 
 
 def _in_present_utc(vehicle: VehicleMemory, inputs: StepInputs) -> VehicleMemory:

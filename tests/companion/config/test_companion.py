@@ -36,6 +36,8 @@ def test_printed_configuration_reads_back_as_the_same(tmp_path: Path) -> None:
         ("[estimator.imm.sway]\ntilt_std_rad = 1e-300\n", "tilt_std_rad"),
         ("[estimator.imm.easing]\nbegins_after_s = 1e-300\n", "begins_after_s"),
         ("[guidance.mpc]\njerk_weight = 1e-300\n", "jerk_weight"),
+        ("[guidance.mpc]\nintercept_time_min_s = 1e6\n", "intercept_time_min_s"),
+        ("[guidance.mpc]\ntouch_time_s = 1e6\n", "touch_time_s"),
         ("[descent]\ncommit_height_m = 'low'\n", "commit_height_m"),
         ("[landing]\nheight_m = 1.0\n", "landing"),
         ("[silent_vehicle]\n[estimator]\nkind = 'ukf'\n", "silent_vehicle"),

@@ -13,7 +13,7 @@ from companion.situation.phases import Phase
 from link.messages import Command
 from link.records import replace
 from tests.companion.facts import changed, pad_at, situation
-from tests.companion.world import CONFIG, LANDING, START_NS, Flight, reached
+from tests.companion.world import CONFIG, LANDING, PAD, START_NS, Flight, KnownVehicle, reached
 
 AHEAD_S = 0.3
 HOLD_S = CONFIG.integrity.fix_ahead_hold_s
@@ -29,6 +29,49 @@ def test_landing_on_fixes_from_the_future_is_broken_off(phase: Phase) -> None:
     flight.run_until(Phase.HOLD)
     assert "0.30 s before their stamps" in flight.sentence
     assert "link is too slow" in flight.sentence
+
+
+GPS_WEEKS_1024_S = 1024 * 7 * 86400.0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("set_back_s", [3.0, GPS_WEEKS_1024_S])
+def test_clock_that_is_set_back_in_flight_is_told_as_such(set_back_s: float) -> None:
+    flight = reached(Phase.CHASE)
+    flight.stamps_ahead_s = -set_back_s
+    flight.run_until(Phase.ABORT, limit_s=CONFIG.abort.fix_age_max_s + 0.2)
+    assert flight.reason is Reason.VEHICLE_DATA_OLD
+    flight.run_until(Phase.HOLD)
+    assert flight.reason is Reason.STAMPS_LATE
+    assert f"{set_back_s:.2f} s after their stamps" in flight.sentence
+
+
+def test_launch_over_late_stamps_is_refused_for_them() -> None:
+    flight = Flight(stamps_ahead_s=-GPS_WEEKS_1024_S)
+    flight.run(1.0)
+    reply = flight.step(Command.LAUNCH).reply
+    assert reply is not None
+    assert not reply.accepted
+    assert "after their stamps" in reply.reason
+
+
+def test_wait_tells_of_late_stamps_before_it_tells_of_a_heading_that_they_leave_unknown() -> None:
+    far = replace(PAD, antenna_to_pad_m=(1.0, 0.0, 0.0))
+    flight = Flight(vehicle=KnownVehicle((-20.0, 0.4, 1.5), (4.0, 0.0, 0.0), yaw_rad=None), pad=far)
+    flight.start_and_reach(Phase.WAITING)
+    told = flight.step()
+    flight.stamps_ahead_s = -GPS_WEEKS_1024_S
+    flight.run(1.0)
+    now = flight.step()
+    assert (told.status.reason_code, now.status.reason_code) == ("HEADING_UNKNOWN", "STAMPS_LATE")
+
+
+def test_one_fix_that_comes_very_late_among_others_is_no_clock_that_was_set() -> None:
+    flight = reached(Phase.WAITING)
+    for step in range(100):
+        flight.stamps_ahead_s = -3.0 if step % 40 == 0 else -0.05
+        flight.step()
+        assert flight.memory.progress.obstacle is None
 
 
 def test_landing_on_fixes_from_the_future_is_not_begun() -> None:
@@ -139,8 +182,8 @@ def test_step_counts_where_it_moves_an_unseen_pad_by_more_than_s2_allows(
     assert have_stamps_stepped(changed(situation(pad=pad), stamps_stepped_s=stepped_s), CONFIG) is expected
 
 
-def told(stamps: FixStamps, newest_ns: int | None, t_ns: int, early_s: float | None = None) -> FixStamps:
-    return update_fix_stamps(stamps, newest_ns, t_ns, t_ns, early_s=early_s)
+def told(stamps: FixStamps, newest_ns: int | None, t_ns: int, refused_age_s: float | None = None) -> FixStamps:
+    return update_fix_stamps(stamps, newest_ns, t_ns, t_ns, refused_age_s=refused_age_s)
 
 
 def test_age_is_that_of_the_step_which_took_the_fix_in() -> None:
@@ -154,5 +197,5 @@ def test_age_is_that_of_the_step_which_took_the_fix_in() -> None:
 
 def test_refused_fix_from_the_future_tells_by_how_much_it_came_early() -> None:
     known = told(FixStamps(), START_NS, START_NS + 200_000_000)
-    refused = told(known, START_NS, START_NS + 300_000_000, early_s=3.0)
+    refused = told(known, START_NS, START_NS + 300_000_000, refused_age_s=-3.0)
     assert refused == replace(known, age_on_arrival_s=-3.0)

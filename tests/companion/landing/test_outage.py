@@ -121,12 +121,17 @@ def test_climb_waits_for_who_is_silent_as_long_as_it_may(silence: Reason) -> Non
     assert decided(progress(Phase.ABORT, limit_s + 0.1), facts, {}) == (Event.CLEAR_TO_HOLD, Cause(silence))
 
 
-@pytest.mark.parametrize(("late_s", "reason"), [(1.1, Reason.STAMPS_LATE), (-1.0, Reason.STAMPS_AHEAD)])
-def test_vehicle_whose_stamps_are_wrong_is_not_said_to_send_nothing(late_s: float, reason: Reason) -> None:
+@pytest.mark.parametrize(
+    ("late_s", "reason", "values"),
+    [(1.1, Reason.STAMPS_LATE, (1.1, CONFIG.abort.fix_age_max_s)), (-1.0, Reason.STAMPS_AHEAD, (1.0,))],
+)
+def test_vehicle_whose_stamps_are_wrong_is_not_said_to_send_nothing(
+    late_s: float, reason: Reason, values: tuple[float, ...]
+) -> None:
     silent = changed(SILENT[Reason.NO_VEHICLE_DATA], fix_age_on_arrival_s=late_s)
     climb = progress(Phase.ABORT, CONFIG.abort.time_limit_s + 0.1)
     ended = decided(climb, silent, {reason: climb.since_ns})
-    assert ended == (Event.CLEAR_TO_HOLD, Cause(reason, (abs(late_s),)))
+    assert ended == (Event.CLEAR_TO_HOLD, Cause(reason, values))
 
 
 def test_vehicle_that_is_heard_of_now_and_then_is_not_approached_again() -> None:
