@@ -7,7 +7,8 @@ import statistics
 from companion.check.observation import VehicleFacts
 from companion.config.integrity import IntegrityConfig
 from companion.core.data import Quantity
-from companion.vehicle.inputs import imu_measurements
+from companion.vehicle.imu_inputs import imu_measurements
+from companion.vehicle.inputs import VELOCITY_STD_M_S
 from companion.vehicle.unit_watch import UnitWatch
 from link.frames.rotations import yaw_of
 from link.messages import Fix, FixVelocity, VehicleImu
@@ -64,6 +65,9 @@ class VehicleReader:
             message = cdr.decode(FixVelocity, payload)
         except PayloadError:
             return
+        covariance = message.velocity_covariance_enu_m2_s2
+        variance = VELOCITY_STD_M_S**2 if covariance is None else covariance[0]
+        self._unit.pushes.take_velocity(message.t_ns, message.velocity_enu_m_s, variance)
         east_m_s, north_m_s, _ = message.velocity_enu_m_s
         speed_m_s = math.hypot(east_m_s, north_m_s)
         if self._heading is None or speed_m_s < self._course_speed_min_m_s:
@@ -100,7 +104,7 @@ class VehicleReader:
             std_m=self._std_m,
             has_velocity=self._has_velocity,
             tells_acceleration=self._tells_acceleration,
-            acceleration_refused_why=self._unit.gravity.doubt,
+            acceleration_refused_why=self._unit.doubts().get("acceleration"),
             describes_pad=pad.is_answered,
             pad_refused_why=pad.refused_why,
             antenna_behind_pad_m=0.0 if pad.pad is None else pad.pad.antenna_to_pad_m[0],

@@ -119,6 +119,8 @@ class VehicleLink:
         self._keys = keys
         self._clock = clock
         self._unit = UnitWatch()
+        self._doubted: frozenset[str] = frozenset()  # of what the unit tells
+        self._has_doubted = False  # something more of it since the last step
         self._received: list[tuple[str, list[Measurement]]] = []  # on which key, since the last step
         self._second_ns = 0  # in which samples are counted, when it began
         self._heard: Counter[str] = Counter()
@@ -147,9 +149,16 @@ class VehicleLink:
         if key == self._keys.pad_pose and not measurements and state.history:
             self.refuse(*_SIGHTING_UNPLACED, _UNPLACED)
         if key == self._keys.imu:
-            for what, why in self._unit.doubts().items():
-                self.refuse(what, "doubted", why)
+            self._doubt_unit()
         self._received.append((key, measurements))
+
+    def _doubt_unit(self) -> None:
+        """Refuse what the inertial unit tells and is not believed."""
+        doubts = self._unit.doubts()
+        for what, why in doubts.items():
+            self.refuse(what, "doubted", why)
+        self._has_doubted |= not self._doubted.issuperset(doubts)
+        self._doubted = frozenset(doubts)
 
     def receive_pad(self, pad: PadGeometry) -> bool:
         """Take the description of the pad; return whether it is one that can be."""
@@ -191,6 +200,7 @@ class VehicleLink:
             is_utc_known: before, a stamp ahead of the companion's own clock says nothing about who is wrong.
         """
         received, self._received = self._received, []
+        has_doubted, self._has_doubted = self._has_doubted, False
         taken: list[Measurement] = []
         fix_ahead_s: float | None = None
         for key, measurements in received:
@@ -203,6 +213,7 @@ class VehicleLink:
         return VehicleInputs(
             measurements=tuple(taken),
             fix_ahead_s=fix_ahead_s,
+            has_doubted_unit=has_doubted,
             is_alive=self.alive,
             pad=self.pad,
             has_unplaced_sightings=self.refusals.has_recent(*_SIGHTING_UNPLACED, self._clock.monotonic_ns),

@@ -43,6 +43,7 @@ class VehicleInputs(Struct, frozen=True, kw_only=True, eq=False):
     Attributes:
         measurements: received since the last step, sightings of its pad included.
         fix_ahead_s: by which the newest fix since then came before its stamp, so that it was refused; None if none was.
+        has_doubted_unit: something that its inertial unit tells has since then been found to be wrong.
         is_alive: its liveliness token is there; None when it never showed one.
         pad: its own description of its pad.
         has_unplaced_sightings: lately some came that are stamped when nobody knew where the drone was.
@@ -50,6 +51,7 @@ class VehicleInputs(Struct, frozen=True, kw_only=True, eq=False):
 
     measurements: tuple[Measurement, ...] = ()
     fix_ahead_s: float | None = None
+    has_doubted_unit: bool = False
     is_alive: bool | None = None
     pad: PadGeometry | None = None
     has_unplaced_sightings: bool = False

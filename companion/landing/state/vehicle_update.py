@@ -57,14 +57,16 @@ def update_vehicle(vehicle: VehicleMemory, inputs: StepInputs, system: System) -
     way = way_error(system.estimator, estimator, measurements)
     if measurements:
         estimator = system.estimator.fuse(estimator, measurements)
-    contradictions, sightings, phases = vehicle.contradictions, vehicle.sightings, vehicle.phases
+    sightings, phases, led_astray = vehicle.sightings, vehicle.phases, inputs.vehicle.has_doubted_unit
+    contradictions = Contradictions() if led_astray else vehicle.contradictions
     newest_fix_ns = system.estimator.newest_fix_ns(estimator)
     if newest_fix_ns is not None and newest_fix_ns != vehicle.fix_stamps.newest_ns:
         is_of_stamps = is_step_of_stamps(vehicle.fix_stamps, (inputs.t_ns - newest_fix_ns) * 1e-9, way)
         place_step = system.estimator.health(estimator).place_step
         phases = with_place_step(phases, place_step, way if is_of_stamps else None)
-    if is_lag_new or (point.is_known and not vehicle.velocity_point.is_known):
-        phases = without_place_step(phases)  # velocities that were too old, or of another point, have led it away
+    is_point_new = point.is_known and not vehicle.velocity_point.is_known
+    if is_lag_new or is_point_new or led_astray:
+        phases = without_place_step(phases)  # what was told wrong has led the estimate away
     if contradictions.is_due(now_ns):
         health = system.estimator.health(estimator)
         contradictions = update_contradictions(contradictions, health, now_ns)

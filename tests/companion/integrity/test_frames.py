@@ -128,6 +128,16 @@ def test_step_of_an_estimate_that_was_led_astray_takes_no_frame_for_good(of_stam
     assert not are_frames_one(with_place_step(phases, (2, 0.7), of_stamps), AUTO, LATER_NS)
 
 
+def test_inertial_unit_that_is_found_to_be_wrong_takes_no_frame_for_good() -> None:
+    flight = reached(Phase.CHASE)
+    flight.sends_fixes = False
+    led_astray = replace(flight.memory.vehicle, phases=with_place_step(after(FIXED), (1, 0.7)))
+    inputs = flight.inputs()
+    found = replace(inputs, vehicle=replace(inputs.vehicle, has_doubted_unit=True))
+    for given_inputs, has_stepped in ((inputs, True), (found, False)):
+        assert update_vehicle(led_astray, given_inputs, flight.system).phases.has_vehicle_stepped is has_stepped
+
+
 def test_stamps_that_go_back_vouch_for_no_receiver_that_has_stepped() -> None:
     phases = with_place_step(with_place_step(after(FIXED), (1, 0.7)), (2, 0.7), on_way(-0.078))
     assert not are_frames_one(with_place_step(phases, (3, 0.7), on_way(0.078)), AUTO, LATER_NS)

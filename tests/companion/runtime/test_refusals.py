@@ -1,11 +1,14 @@
 """What is said of refused data."""
 
+import math
+
 import pytest
 
 from companion.autopilots.state import AutopilotState
 from companion.runtime.step_clock import StepClock
 from companion.runtime.vehicle_link import Refusals, VehicleLink
-from link.messages import PadSighting
+from link.frames.rotations import quaternion_from_yaw
+from link.messages import PadSighting, VehicleImu
 from link.payloads import cdr
 from link.zenoh.keys import Keys
 from tests.companion.world import START_NS, own_state
@@ -38,3 +41,17 @@ def test_sighting_at_a_time_of_which_the_drones_place_is_not_known_is_refused(of
     assert vehicle.refusals.total == is_refused
     assert ("clock" in vehicle.refused_lately()) is is_refused
     assert vehicle.take(is_utc_known=True).has_unplaced_sightings is is_refused
+
+
+def test_step_hears_once_that_something_of_the_inertial_unit_is_found_to_be_wrong() -> None:
+    vehicle, told = VehicleLink(KEYS, StepClock(50.0), None), []
+    for index in range(390):  # more in a second are refused
+        imu = VehicleImu(
+            t_ns=START_NS + 20_000_000 * index,
+            orientation_wxyz=quaternion_from_yaw(0.15 * 0.02 * index),
+            angular_velocity_flu_rad_s=(0.0, 0.0, math.degrees(0.15)),
+        )
+        vehicle.receive(KEYS.imu, cdr.encode(imu), AutopilotState())
+        told.append(vehicle.take(is_utc_known=False).has_doubted_unit)
+    assert sum(told) == 1
+    assert vehicle.refused_lately().startswith("yaw rate")

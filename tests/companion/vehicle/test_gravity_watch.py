@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 
 from companion.core.data import Quantity
 from companion.vehicle.gravity_watch import GravityWatch
-from companion.vehicle.inputs import imu_measurements, plausible
+from companion.vehicle.imu_inputs import imu_measurements
+from companion.vehicle.inputs import plausible
 from companion.vehicle.unit_watch import UnitWatch
 from link.frames.rotations import conjugate, quaternion_from_roll_pitch_yaw, rotate
 from link.messages import Matrix3, Vector3, VehicleImu

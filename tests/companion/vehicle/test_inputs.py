@@ -12,9 +12,9 @@ from scipy.spatial.transform import Rotation
 from companion.autopilots.driver import NO_AUTOPILOT
 from companion.autopilots.state import AutopilotState
 from companion.core.data import Measurement, Quantity
+from companion.vehicle.imu_inputs import imu_measurements
 from companion.vehicle.inputs import (
     fix_measurement,
-    imu_measurements,
     measurements_of,
     plausible,
     sighting_measurement,

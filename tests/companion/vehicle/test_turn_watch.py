@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from companion.core.data import Quantity
-from companion.vehicle.inputs import imu_measurements
+from companion.vehicle.imu_inputs import imu_measurements
 from companion.vehicle.unit_watch import UnitWatch
 from link.frames.rotations import quaternion_from_roll_pitch_yaw
 from link.messages import VehicleImu

@@ -17,7 +17,8 @@ from typing import TypeVar
 
 import pytest
 
-from companion.vehicle.inputs import fix_measurement, imu_measurements, velocity_measurements
+from companion.vehicle.imu_inputs import imu_measurements
+from companion.vehicle.inputs import fix_measurement, velocity_measurements
 from companion.vehicle.unit_watch import UnitWatch
 from link.frames.geodesy import Datum, LocalFrame, Projection
 from link.frames.rotations import yaw_of
