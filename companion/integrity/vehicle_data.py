@@ -156,6 +156,7 @@ class Unverified(Enum):
     PLACE = "the pad is where sightings alone say: nothing shows a detector that is always off by the same"
     FRAMES = "both receivers are taken to have one frame, for their phases are fixed: nothing sees the pad"
     STAMPS = "the vehicle's stamps: those that are {late_s:g} s late put the pad {off_m:.1f} m off, and nothing sees it"
+    LEVER = "the vehicle's antenna_to_pad_m: nothing sees where the pad is on the vehicle"
     HEADING = (
         "the vehicle's heading: {off_deg:.0f} degrees put the pad {off_m:.1f} m off, and neither a course nor a "
         "detector has shown it"
@@ -174,7 +175,7 @@ def unverified(s: Situation, c: CompanionConfig) -> tuple[str, ...]:
     off_m = _LATE_S * pad.ground_speed_m_s
     stamps = Unverified.STAMPS.value.format(late_s=_LATE_S, off_m=off_m)
     frames = (Unverified.FRAMES.value,) if c.integrity.receiver_frames is ReceiverFrames.AUTO else ()
-    return (stamps, *frames, *_unverified_heading(s, c))
+    return (stamps, Unverified.LEVER.value, *frames, *_unverified_heading(s, c))
 
 
 def _unverified_heading(s: Situation, c: CompanionConfig) -> tuple[str, ...]:

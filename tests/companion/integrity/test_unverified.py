@@ -11,6 +11,7 @@ from link.records import replace
 from tests.companion.facts import CONFIG, changed, pad_at, situation
 
 ONE = CompanionConfig(integrity=IntegrityConfig(receiver_frames=ReceiverFrames.ONE))
+LEVER = Unverified.LEVER.value
 LATE_AT_5_M_S = Unverified.STAMPS.value.format(late_s=0.1, off_m=0.5)
 
 
@@ -21,8 +22,8 @@ def facts(*, is_seen: bool, has_one_frame: bool = True, is_coarse: bool = False)
 
 
 def test_vehicle_that_nothing_sees_is_where_its_stamps_say() -> None:
-    assert unverified(facts(is_seen=False), ONE) == (LATE_AT_5_M_S,)
-    assert unverified(facts(is_seen=False), CONFIG) == (LATE_AT_5_M_S, Unverified.FRAMES.value)
+    assert unverified(facts(is_seen=False), ONE) == (LATE_AT_5_M_S, LEVER)
+    assert unverified(facts(is_seen=False), CONFIG) == (LATE_AT_5_M_S, LEVER, Unverified.FRAMES.value)
 
 
 @pytest.mark.parametrize(("has_one_frame", "is_coarse"), [(False, False), (True, True)])
@@ -37,9 +38,9 @@ def test_heading_that_no_course_has_shown_is_believed_where_the_pad_is_beside_th
     assert unseen.pad is not None
     parked = changed(replace(unseen, pad=replace(unseen.pad, mounting=arm)), has_shown_heading=False)
     heading = Unverified.HEADING.value.format(off_deg=12.0, off_m=0.27)  # a chord: 2 * 1.3 m * sin(6 degrees)
-    assert unverified(parked, ONE) == (LATE_AT_5_M_S, heading)
-    assert unverified(changed(parked, has_shown_heading=True), ONE) == (LATE_AT_5_M_S,)
-    assert unverified(changed(unseen, has_shown_heading=False), ONE) == (LATE_AT_5_M_S,)
+    assert unverified(parked, ONE) == (LATE_AT_5_M_S, LEVER, heading)
+    assert unverified(changed(parked, has_shown_heading=True), ONE) == (LATE_AT_5_M_S, LEVER)
+    assert unverified(changed(unseen, has_shown_heading=False), ONE) == (LATE_AT_5_M_S, LEVER)
     seen = replace(parked, pad=replace(unseen.pad, mounting=arm, frame_offset=FrameOffset(distance_m=0.0)))
     assert unverified(seen, ONE) == ()
 
