@@ -19,6 +19,9 @@ OFFBOARD, POSITION = 0x0006_0000, 0x0003_0000
 PLACE_1E7 = (475_555_555, 80_214_091)
 KEYS = Keys()
 TICK_NS = 5 * MS
+_TICKS_A_FIX = 20
+PLACE = (-30.0, 0.4, PAD_HEIGHT_M)
+"""Of a vehicle that has not come yet."""
 
 
 @cache
@@ -144,7 +147,12 @@ class Setup:
             for frame in self.node.take_frames():
                 self.autopilot.receive(frame, self.t_ns)
 
-    def fix(self, place_enu_m: Vector3 = (-30.0, 0.4, PAD_HEIGHT_M), late_s: float = 0.0, std_m: float = 0.0) -> None:
+    def fixes(self, place_enu_m: Vector3 = PLACE, std_m: float = 0.0) -> None:
+        """Send a fix as `fix` does, in every twentieth tick: ten a second, as receivers do."""
+        if self.t_ns // TICK_NS % _TICKS_A_FIX == 0:
+            self.fix(place_enu_m, std_m=std_m)
+
+    def fix(self, place_enu_m: Vector3 = PLACE, late_s: float = 0.0, std_m: float = 0.0) -> None:
         """Send a fix of a vehicle, made `late_s` ago; without a deviation it states none."""
         frame = self.node.autopilot.state.view.frame or FRAME
         latitude_rad, longitude_rad, altitude_m = geodetic_from_local(frame, place_enu_m)

@@ -47,7 +47,7 @@ class Station:
 
 def _ready() -> Station:
     station = Station()
-    station.setup.run(3.0, station.setup.fix)
+    station.setup.run(3.0, station.setup.fixes)
     assert station.setup.node.autopilot.state.places_drone
     assert station.setup.node.vehicle_heard
     return station
@@ -179,7 +179,7 @@ def test_value_that_was_set_is_flown_by_and_none_is_set_in_flight() -> None:
 def test_pad_is_told_where_it_is(on_map: PadOnMap, kinds: int) -> None:
     setup = Setup(is_component=True, config=CompanionConfig(ground_station=GroundStationConfig(pad_on_map=on_map)))
     setup.node.receive_pad(PadGeometry(size_m=(1.5, 1.5), height_m=1.5, antenna_to_pad_m=(0.0, 0.0, 0.0)))
-    setup.run(6.0, lambda: setup.fix((-30.0, 40.0, 1.5)))
+    setup.run(6.0, lambda: setup.fixes((-30.0, 40.0, 1.5)))
     told = [setup.autopilot.of_type(kind) for kind in ("FOLLOW_TARGET", "ADSB_VEHICLE")]
     assert [bool(messages) for messages in told] == [kinds > 0, kinds > 1]
     frame = setup.node.autopilot.state.view.frame or FRAME

@@ -25,11 +25,11 @@ def _guiding(guide: Guide = Guide.PRECLAND, *, dry_run: bool = False) -> Setup:
 def test_pad_is_told_at_the_step_rate_and_no_longer_than_it_is_known() -> None:
     setup = _guiding()
     assert setup.autopilot.of_type("LANDING_TARGET") == []
-    setup.run(3.0, lambda: setup.fix(PLACE, std_m=0.02))
+    setup.run(3.0, lambda: setup.fixes(PLACE, std_m=0.02))
     told = setup.autopilot.of_type("LANDING_TARGET")
     before = len(told)
     assert (told[-1].y, told[-1].x) == pytest.approx(PLACE[:2], abs=0.2)
-    setup.run(1.0, lambda: setup.fix(PLACE, std_m=0.02))
+    setup.run(1.0, lambda: setup.fixes(PLACE, std_m=0.02))
     assert 40 <= len(setup.autopilot.of_type("LANDING_TARGET")) - before <= 70
     setup.run(3.0)
     silent = len(setup.autopilot.of_type("LANDING_TARGET"))
@@ -40,7 +40,7 @@ def test_pad_is_told_at_the_step_rate_and_no_longer_than_it_is_known() -> None:
 def test_start_is_refused_and_nothing_is_flown() -> None:
     setup = _guiding()
     setup.node.request(Command.START)
-    setup.run(1.0, lambda: setup.fix(PLACE, std_m=0.02))
+    setup.run(1.0, lambda: setup.fixes(PLACE, std_m=0.02))
     (reply,) = setup.node.take_replies()
     assert not reply.accepted
     assert "precision landing" in reply.reason
@@ -52,5 +52,5 @@ def test_start_is_refused_and_nothing_is_flown() -> None:
 @pytest.mark.parametrize(("guide", "dry_run"), [(Guide.SETPOINTS, False), (Guide.PRECLAND, True)])
 def test_pad_is_not_told_unless_asked_to(guide: Guide, *, dry_run: bool) -> None:
     setup = _guiding(guide, dry_run=dry_run)
-    setup.run(2.0, lambda: setup.fix(PLACE, std_m=0.02))
+    setup.run(2.0, lambda: setup.fixes(PLACE, std_m=0.02))
     assert setup.autopilot.of_type("LANDING_TARGET") == []

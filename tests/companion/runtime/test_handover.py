@@ -17,11 +17,11 @@ def taking_off(landed_state: int) -> Setup:
     """A node that is ended during its take-off, with the motors on."""
     setup = Setup()
     setup.node.receive_pad(PAD)
-    setup.run(3.0, setup.fix)
+    setup.run(3.0, setup.fixes)
     setup.node.request(Command.START)
-    setup.run(2.5, setup.fix)
+    setup.run(2.5, setup.fixes)
     setup.autopilot.landed_state = landed_state
-    setup.run(0.5, setup.fix)
+    setup.run(0.5, setup.fixes)
     assert setup.autopilot.armed
     assert setup.node.phase is Phase.TAKEOFF
     return setup

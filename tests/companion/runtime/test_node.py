@@ -41,7 +41,7 @@ def test_limits_that_change_in_a_descent_count_after_it(phase: Phase, *, counts:
 @pytest.mark.slow
 def test_node_arms_changes_mode_and_streams_only_after_a_start() -> None:
     setup = ready()
-    setup.run(3.0, setup.fix)
+    setup.run(3.0, setup.fixes)
     for command in (ARM, SET_MODE):
         assert not setup.autopilot.commands(command)
     assert not setup.autopilot.setpoints()
@@ -207,9 +207,9 @@ def test_geoid_lifts_the_origin_to_the_ellipsoid() -> None:
 @pytest.mark.slow
 def test_autopilot_that_tells_no_height_above_the_ellipsoid_is_not_started_and_says_what_to_set() -> None:
     setup = Setup(autopilot=FakePx4(geoid_height_m=None))
-    setup.run(5.0, setup.fix)
+    setup.run(5.0, setup.fixes)
     setup.node.request(Command.START)
-    setup.run(0.1, setup.fix)
+    setup.run(0.1, setup.fixes)
     (reply,) = setup.node.take_replies()
     assert not reply.accepted
     assert "set autopilot.geoid_height_m" in reply.reason

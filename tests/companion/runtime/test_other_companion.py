@@ -27,9 +27,9 @@ def ready(heartbeat: tuple[int, int]) -> Setup:
     """A node that may be started, and that has just heard another companion."""
     setup = Setup(is_component=True)
     setup.node.receive_pad(PAD)
-    setup.run(3.0, setup.fix)
+    setup.run(3.0, setup.fixes)
     hear(setup, heartbeat)
-    setup.run(0.1, setup.fix)
+    setup.run(0.1, setup.fixes)
     return setup
 
 
@@ -41,7 +41,7 @@ def with_own_start(heard_after_s: float | None, later_s: float = 1.5) -> Setup:
 
     def turn() -> None:
         nonlocal unheard
-        setup.fix()
+        setup.fixes()
         if unheard and heard_after_s is not None and (setup.t_ns - begun_ns) * 1e-9 > heard_after_s:
             hear(setup, FLIES)
             unheard = False
@@ -55,7 +55,7 @@ def with_own_start(heard_after_s: float | None, later_s: float = 1.5) -> Setup:
 def test_start_is_refused_while_another_companion_tells_that_it_flies_the_drone(command: Command) -> None:
     setup = ready(FLIES)
     setup.node.request(command)
-    setup.run(1.0, setup.fix)
+    setup.run(1.0, setup.fixes)
     (reply,) = setup.node.take_replies()
     assert (reply.accepted, "another companion" in reply.reason) == (False, True)
     assert setup.node.phase is Phase.IDLE
@@ -66,26 +66,26 @@ def test_start_is_refused_while_another_companion_tells_that_it_flies_the_drone(
 def test_start_is_accepted_beside_a_component_that_flies_nothing(heartbeat: tuple[int, int]) -> None:
     setup = ready(heartbeat)
     setup.node.request(Command.START)
-    setup.run(0.1, setup.fix)
+    setup.run(0.1, setup.fixes)
     assert [reply.accepted for reply in setup.node.take_replies()] == [True]
 
 
 def test_start_is_accepted_once_the_other_companion_is_silent() -> None:
     setup = ready(FLIES)
-    setup.run(LOST_AFTER_NS * 1e-9 + 0.1, setup.fix)
+    setup.run(LOST_AFTER_NS * 1e-9 + 0.1, setup.fixes)
     setup.node.request(Command.START)
-    setup.run(0.1, setup.fix)
+    setup.run(0.1, setup.fixes)
     assert [reply.accepted for reply in setup.node.take_replies()] == [True]
 
 
 def test_companion_in_the_air_is_not_stopped_by_heartbeats_of_another_one() -> None:
     setup = ready(IDLE)
     setup.node.request(Command.START)
-    setup.run(3.0, setup.fix)
+    setup.run(3.0, setup.fixes)
     setup.autopilot.landed_state = mavlink.MAV_LANDED_STATE_IN_AIR
-    setup.run(0.5, setup.fix)
+    setup.run(0.5, setup.fixes)
     hear(setup, FLIES)
-    setup.run(0.5, setup.fix)
+    setup.run(0.5, setup.fixes)
     assert setup.node.phase is Phase.TAKEOFF
 
 
@@ -106,7 +106,7 @@ def told_of_start(setup: Setup) -> Message:
     """The heartbeat that comes within a tenth of a second after a start."""
     setup.node.request(Command.START)
     told = len(setup.autopilot.of_type("HEARTBEAT"))
-    setup.run(0.1, setup.fix)
+    setup.run(0.1, setup.fixes)
     (heartbeat,) = setup.autopilot.of_type("HEARTBEAT")[told:]
     return heartbeat
 
@@ -119,12 +119,12 @@ def test_start_is_told_at_once_and_not_with_the_next_second() -> None:
 def test_dry_run_that_is_started_is_no_companion_that_flies() -> None:
     dry = Setup(is_component=True, dry_run=True)
     dry.node.receive_pad(PAD)
-    dry.run(3.0, dry.fix)
+    dry.run(3.0, dry.fixes)
     heartbeat = told_of_start(dry)
     assert dry.node.phase is Phase.TAKEOFF
     other = ready((heartbeat.system_status, heartbeat.custom_mode))
     other.node.request(Command.START)
-    other.run(0.1, other.fix)
+    other.run(0.1, other.fixes)
     assert [reply.accepted for reply in other.node.take_replies()] == [True]
 
 
@@ -132,11 +132,11 @@ def test_dry_run_that_is_started_is_no_companion_that_flies() -> None:
 def test_who_still_stands_gives_way_to_one_that_started_at_the_same_moment(after_s: float) -> None:
     setup = ready(IDLE)
     setup.node.request(Command.START)
-    setup.run(after_s, setup.fix)
+    setup.run(after_s, setup.fixes)
     hear(setup, FLIES)
-    setup.run(0.1, setup.fix)
+    setup.run(0.1, setup.fixes)
     setpoints = len(setup.autopilot.setpoints())
-    setup.run(1.0, setup.fix)
+    setup.run(1.0, setup.fixes)
     assert setup.node.phase is Phase.PILOT
     assert len(setup.autopilot.setpoints()) == setpoints
 
@@ -150,9 +150,9 @@ def giving_way(*, is_armed_by_pilot: bool = False, command: Command = Command.ST
     """A node that hears, its drone armed on the ground, that another one has started it at the same moment."""
     setup = ready(IDLE)
     setup.autopilot.armed = is_armed_by_pilot
-    setup.run(1.5, setup.fix)
+    setup.run(1.5, setup.fixes)
     setup.node.request(command)
-    setup.run(2.5, setup.fix)
+    setup.run(2.5, setup.fixes)
     assert setup.autopilot.armed
     hear(setup, FLIES)
     return setup
@@ -160,7 +160,7 @@ def giving_way(*, is_armed_by_pilot: bool = False, command: Command = Command.ST
 
 def test_who_gives_way_stops_the_motors_that_it_has_ordered_on_the_ground_and_says_so_once() -> None:
     setup = giving_way()
-    setup.run(2.0, setup.fix)
+    setup.run(2.0, setup.fixes)
     assert not setup.autopilot.armed
     assert texts(setup).count("another companion is there") == 1
 
@@ -169,16 +169,16 @@ def test_who_gives_way_while_its_order_to_arm_is_under_way_stops_the_motors() ->
     setup = ready(IDLE)
     setup.node.request(Command.START)
     while not setup.autopilot.commands(ARM):
-        setup.run(0.005, setup.fix)
+        setup.run(0.005, setup.fixes)
     assert not setup.node.autopilot.state.view.armed
     hear(setup, FLIES)
-    setup.run(2.0, setup.fix)
+    setup.run(2.0, setup.fixes)
     assert not setup.autopilot.armed
 
 
 def test_of_two_that_launch_from_a_deck_at_the_same_moment_both_give_way() -> None:
     def stand() -> None:
-        setup.fix((0.0, 0.0, 0.0))
+        setup.fixes((0.0, 0.0, 0.0))
 
     setup = Setup(is_component=True)
     setup.node.receive_pad(PAD)
@@ -194,7 +194,7 @@ def test_of_two_that_launch_from_a_deck_at_the_same_moment_both_give_way() -> No
 
 def test_who_gives_way_leaves_motors_that_it_has_not_ordered() -> None:
     setup = giving_way(is_armed_by_pilot=True)
-    setup.run(2.0, setup.fix)
+    setup.run(2.0, setup.fixes)
     assert setup.node.phase is Phase.PILOT
     assert setup.autopilot.armed
 
@@ -202,11 +202,11 @@ def test_who_gives_way_leaves_motors_that_it_has_not_ordered() -> None:
 def test_who_has_given_way_leaves_the_motors_to_a_pilot_who_has_changed_the_mode() -> None:
     setup = giving_way()
     setup.autopilot.results = {ARM: ()}  # the disarm gets lost
-    setup.run(0.1, setup.fix)
+    setup.run(0.1, setup.fixes)
     setup.autopilot.custom_mode = POSITION
-    setup.run(1.5, setup.fix)
+    setup.run(1.5, setup.fixes)
     told = len(setup.autopilot.commands(ARM))
-    setup.run(2.0, setup.fix)
+    setup.run(2.0, setup.fixes)
     assert len(setup.autopilot.commands(ARM)) == told
     assert setup.autopilot.armed
 
@@ -214,11 +214,11 @@ def test_who_has_given_way_leaves_the_motors_to_a_pilot_who_has_changed_the_mode
 def test_drone_in_the_air_is_not_disarmed_by_who_gives_way() -> None:
     setup = ready(IDLE)
     setup.autopilot.armed, setup.autopilot.landed_state = True, mavlink.MAV_LANDED_STATE_IN_AIR
-    setup.run(1.5, setup.fix)
+    setup.run(1.5, setup.fixes)
     setup.node.request(Command.START)
-    setup.run(1.5, setup.fix)
+    setup.run(1.5, setup.fixes)
     hear(setup, FLIES)
-    setup.run(2.0, setup.fix)
+    setup.run(2.0, setup.fixes)
     assert setup.node.phase is Phase.PILOT
     assert setup.autopilot.commands(ARM) == []
 
@@ -227,5 +227,5 @@ def test_echo_of_its_own_heartbeat_is_no_other_companion() -> None:
     setup = ready(IDLE)
     heartbeat = told_of_start(setup)
     setup.node.receive_mavlink(bytes(heartbeat.get_msgbuf()), setup.t_ns)
-    setup.run(3.0, setup.fix)
+    setup.run(3.0, setup.fixes)
     assert setup.autopilot.armed

@@ -32,9 +32,9 @@ def test_start_with_two_drones_under_one_system_id_arms_neither_and_says_why() -
     both.other.boot_at_ns -= 90 * S
     setup = Setup(autopilot=both)
     setup.node.receive_pad(PAD)
-    setup.run(3.0, setup.fix)
+    setup.run(3.0, setup.fixes)
     setup.node.request(Command.START)
-    setup.run(3.0, setup.fix)
+    setup.run(3.0, setup.fixes)
     (reply,) = setup.node.take_replies()
     assert not reply.accepted
     assert "system id" in reply.reason

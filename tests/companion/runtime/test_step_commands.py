@@ -33,12 +33,12 @@ class Piloted:
         config = CompanionConfig(autopilot=AutopilotConfig(pilot_switch=switch))
         self.autopilot = SwitchedPx4(armed=armed)
         self.setup = Setup(autopilot=self.autopilot, is_component=True, config=config)
-        self.setup.run(3.0, self.setup.fix)
+        self.setup.run(3.0, self.setup.fixes)
 
     def switch(self, pulse_us: int) -> Phase:
         """Switch; return the phase that follows."""
         self.autopilot.pulse_us = pulse_us
-        self.setup.run(SETTLED_S, self.setup.fix)
+        self.setup.run(SETTLED_S, self.setup.fixes)
         return self.setup.node.phase
 
     def texts(self) -> str:
@@ -51,7 +51,7 @@ def test_switch_starts_holds_and_starts_again() -> None:
     pilot = Piloted(arms=True)
     assert pilot.setup.node.phase is Phase.IDLE
     assert pilot.switch(HIGH) is Phase.TAKEOFF
-    pilot.setup.run(2.0, pilot.setup.fix)
+    pilot.setup.run(2.0, pilot.setup.fixes)
     assert pilot.autopilot.armed
     assert pilot.switch(MIDDLE) is Phase.HOLD
     assert pilot.switch(LOW) is Phase.HOLD
@@ -65,7 +65,7 @@ def test_switch_starts_no_motors_unless_it_is_allowed_to() -> None:
     assert "refuses: the motors are off" in pilot.texts()
     pilot.switch(LOW)
     pilot.autopilot.armed = True
-    pilot.setup.run(1.5, pilot.setup.fix)
+    pilot.setup.run(1.5, pilot.setup.fixes)
     assert pilot.switch(HIGH) is Phase.TAKEOFF
 
 
