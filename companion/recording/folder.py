@@ -15,12 +15,18 @@ CONFIG_NAME = "companion.toml"
 _BYTES_PER_MB = 1_000_000
 
 
-def recording_sink(
-    folder: Path, config: CompanionConfig, keys: Keys, *, system_id: int = 1, dry_run: bool = False
-) -> CompanionSink:
-    """Return where a companion's records go: into `recording_store` alone, with the same arguments."""
-    store = recording_store(folder, config, keys, system_id=system_id, dry_run=dry_run)
-    return CompanionSink(store, keys, config.descent)
+def recording_sink(folder: Path, config: CompanionConfig, keys: Keys) -> CompanionSink:
+    """Return where a companion's records go: into `recording_store` alone.
+
+    Args:
+        folder: made when it is missing.
+        config: the companion's own, kept in the recording.
+        keys: of the Zenoh contract.
+
+    Raises:
+        UserError: the folder cannot be written.
+    """
+    return CompanionSink(recording_store(folder, config, keys), keys, config.descent)
 
 
 def recording_store(

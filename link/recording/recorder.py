@@ -85,7 +85,6 @@ class BackgroundRecorder:
         sink: used by that thread only.
         capacity: records that wait at most; further ones are dropped.
         size_of: gives the bytes that a record holds; beyond 50 MB in all that waits, further ones are dropped, too.
-        pause: gives the interpreter away after each record.
         keeps_newest: drop the oldest that waits in place of a further one.
     """
 
@@ -95,13 +94,11 @@ class BackgroundRecorder:
         *,
         capacity: int = _CAPACITY,
         size_of: Callable[[Any], int] = _no_size,
-        pause: Callable[[float], None] = time.sleep,
         keeps_newest: bool = False,
     ) -> None:
         self._sink = sink
         self._capacity = capacity
         self._size_of = size_of
-        self._pause = pause
         self._keeps_newest = keeps_newest
         self._waiting: deque[tuple[int, Any]] = deque()  # sizes and records
         self._waiting_bytes = 0
@@ -171,7 +168,7 @@ class BackgroundRecorder:
                     return
                 record = self._take()
             self._let(self._sink.write, record)
-            self._pause(_PAUSE_S)
+            time.sleep(_PAUSE_S)
 
     def _let(self, act: Callable[..., None], *record: Any) -> None:
         """Let the sink act, and count what it fails with: an error that ended this thread would lose all after it."""

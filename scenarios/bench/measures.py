@@ -21,6 +21,7 @@ from scenarios.processes.programs import MODULES, ProcessGroup, Program, free_tc
 _DEADLINE_S = 60.0
 _POLL_S = 0.005
 _SETTLING_S = 1.0
+_MEASURED_S = 4.0  # of wall time, after it has settled
 _HELP_REPEATS = 3
 
 
@@ -63,12 +64,11 @@ def _first_heartbeat_s(name: str, folder: Path) -> float:
             return time.perf_counter() - began_s
 
 
-def full_speed_factor(folder: Path, measured_s: float = 4.0) -> float:
+def full_speed_factor(folder: Path) -> float:
     """Return how many simulated seconds a second `sim-autopilot --speed 0` makes, alone.
 
     Args:
         folder: for the program's log.
-        measured_s: of wall time, after it has settled.
     """
     endpoint = free_tcp_endpoint()
     arguments = ("--speed", "0", "--mavlink", f"udpout:127.0.0.1:{free_udp_port()}", "-e", endpoint)
@@ -77,7 +77,7 @@ def full_speed_factor(folder: Path, measured_s: float = 4.0) -> float:
         with ProcessGroup([_alone("sim-autopilot", arguments)], folder) as processes:
             _wait(lambda: _newest(ticks) is not None, processes, "the simulator's clock")
             first = _newest_after(ticks, processes, _SETTLING_S)
-            last = _newest_after(ticks, processes, measured_s)
+            last = _newest_after(ticks, processes, _MEASURED_S)
     return (last[1] - first[1]) / (last[0] - first[0])
 
 

@@ -1,11 +1,10 @@
 """A whole run in one process on a simulated clock: the wire run's programs, meeting in the same bytes.
 
-Same scenario, seed and configuration: the same bytes, so the same result.
+Same scenario and seed: the same bytes, so the same result.
 """
 
 from collections.abc import Sequence
 
-from companion.config.companion import CompanionConfig
 from companion.runtime.build import build_node
 from companion.runtime.node import CompanionNode
 from companion.situation.phases import Phase
@@ -33,7 +32,6 @@ class Lockstep:
     Args:
         scenario: what is flown.
         seed: of everything random.
-        config: of the companion, None for the scenario's own.
         recorder: of the companion, None where nothing is recorded.
         publishes: whether the companion makes what it would put on Zenoh, for `take_publications`.
     """
@@ -42,17 +40,15 @@ class Lockstep:
         self,
         scenario: Scenario,
         seed: Seed,
-        config: CompanionConfig | None = None,
-        recorder: Recorder | None = None,
         *,
+        recorder: Recorder | None = None,
         publishes: bool = False,
     ) -> None:
         keys = Keys()
         self.recording = Recording()
         instant = scenario.run.start == "instant"
         self.simulation = Simulation(scenario, seed, keys, START_NS, instant=instant, publishes_truth=False)
-        flown = scenario.system.companion if config is None else config
-        self.companion = build_node(flown, keys, recorder=recorder, publishes=publishes)
+        self.companion = build_node(scenario.system.companion, keys, recorder=recorder, publishes=publishes)
         if not scenario.is_silent:
             self.companion.receive_pad(self.simulation.vehicle.pad)
         self._channels: Channels = channels_of(scenario, seed, START_NS)

@@ -25,6 +25,7 @@ from link.recording.recorder import DirectRecorder
 from link.zenoh.keys import Keys
 from scenarios.recordings.comparison import Comparison, FieldDifference
 
+_SHOWN = 20  # differences of a recording
 OUTPUTS = ("own", "step", "setpoint", "estimate", "forecast", "plan")
 """The topics that are compared; what else is recorded goes in, or is of the clocks and links of its time."""
 
@@ -220,7 +221,7 @@ def _check(record: InputRecord) -> None:
             pass
 
 
-def text_lines(results: Iterable[tuple[str, Replay]], shown: int = 20) -> list[str]:
+def text_lines(results: Iterable[tuple[str, Replay]]) -> list[str]:
     """Return the results as lines for people."""
     lines: list[str] = []
     for name, result in results:
@@ -232,6 +233,6 @@ def text_lines(results: Iterable[tuple[str, Replay]], shown: int = 20) -> list[s
             )
         lines += [
             f"  {one.field:44}{one.largest:12.4g}  in {one.count} messages, first in {one.first}"
-            for one in result.differences[:shown]
+            for one in result.differences[:_SHOWN]
         ]
     return lines

@@ -23,9 +23,9 @@ _DIGITS = 6  # a micrometre, a microsecond
 LANDED = frozenset({Tier.S1, Tier.S2, Tier.S3})
 
 
-def score_run(scenario: Scenario, seed: Seed, recording: Recording, rules: ScoreRules | None = None) -> Score:
-    """Return the score of a recording, on truth, by the scenario's rules unless others are given."""
-    rules = rules or rules_of(scenario, wind_mean_enu_m_s=mean_wind_enu_m_s(scenario, seed))
+def score_run(scenario: Scenario, seed: Seed, recording: Recording) -> Score:
+    """Return the score of a recording, on truth, by the scenario's rules."""
+    rules = rules_of(scenario, wind_mean_enu_m_s=mean_wind_enu_m_s(scenario, seed))
     return score(recording.drone, recording.vehicle, recording.rotors, rules)
 
 

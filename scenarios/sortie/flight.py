@@ -3,7 +3,6 @@
 import math
 from collections.abc import Sequence
 
-from companion.config.companion import CompanionConfig
 from companion.runtime.node import CompanionNode
 from link.messages import CommandReply
 from scenarios.config import Scenario
@@ -21,11 +20,10 @@ class SortieFlight(Lockstep):
     Args:
         scenario: whose drone stands on the deck.
         seed: of everything random.
-        config: of the companion, None for the scenario's own.
     """
 
-    def __init__(self, scenario: Scenario, seed: Seed, config: CompanionConfig | None = None) -> None:
-        super().__init__(scenario, seed, config)
+    def __init__(self, scenario: Scenario, seed: Seed) -> None:
+        super().__init__(scenario, seed)
         self.scenario = scenario
         self.seed = seed
         self.operator = SortieOperator(stations_of(scenario))

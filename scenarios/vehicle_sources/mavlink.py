@@ -38,14 +38,10 @@ _ATTITUDE_COVARIANCE_RAD2 = (4e-4, 0.0, 0.0, 0.0, 4e-4, 0.0, 0.0, 0.0, 1e-2)
 
 
 class MavlinkReceiver:
-    """An autopilot's receiver, heard over MAVLink.
+    """An autopilot's receiver, heard over MAVLink."""
 
-    Args:
-        session: to the autopilot.
-    """
-
-    def __init__(self, session: MavlinkSession | None = None) -> None:
-        self._session = MavlinkSession(_OWN_SYSTEM_ID) if session is None else session
+    def __init__(self) -> None:
+        self._session = MavlinkSession(_OWN_SYSTEM_ID)
         self._without_place = 0
         self._reason: str | None = "no autopilot's heartbeat was received: check device, port and baud rate"
         self._told_ns = 0  # as it was stamped: UTC of the same stamp changes with what is known of the clocks

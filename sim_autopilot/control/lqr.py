@@ -31,6 +31,7 @@ from sim_autopilot.physics.airframe import GRAVITY_M_S2, Airframe
 from sim_autopilot.physics.parameters import Record
 from sim_autopilot.physics.rotation import euler_angles, wrapped
 
+_STEP_S, _END_S = 1e-3, 6.0  # of the linear loop's answer
 OUTPUTS = (0, 1, 2, 5)
 REPORT_Q = np.diag([1.0] * 3 + [0.1] * 3 + [1e-4] * 3 + [0.1] * 3 + [1500.0] * 4)
 REPORT_R = 0.1 * np.eye(4)
@@ -117,8 +118,16 @@ def measured_step(t_s: Array, output: Array) -> StepResponse:
     return StepResponse(settling_s=settling, overshoot=max(0.0, float(output.max()) - 1.0))
 
 
-def linear_step(airframe: Airframe, output: int, *, step_s: float = 1e-3, end_s: float = 6.0) -> tuple[Array, Array]:
-    """Return time (n,) and the answer (n,) of the report's closed linear loop to a unit step of an output, exactly."""
+def linear_step(airframe: Airframe, output: int) -> tuple[Array, Array]:
+    """Return the answer of the report's closed linear loop to a unit step of an output, exactly.
+
+    Args:
+        airframe: that the loop flies.
+        output: its place in `OUTPUTS`.
+
+    Returns:
+        Time (n,), s, and the output (n,), in its own unit.
+    """
     A, B, C = linear_model(airframe)
     K, Ki = report_gains(airframe)
     closed = np.zeros((17, 17))
@@ -126,10 +135,10 @@ def linear_step(airframe: Airframe, output: int, *, step_s: float = 1e-3, end_s:
     closed[:12, 12:16] = B @ Ki
     closed[12:16, :12] = -C
     closed[12 + output, 16] = 1.0  # the last state is the constant reference
-    transition = expm(closed * step_s)
+    transition = expm(closed * _STEP_S)
     state = np.zeros(17)
     state[16] = 1.0
-    t_s = np.arange(0.0, end_s, step_s)
+    t_s = np.arange(0.0, _END_S, _STEP_S)
     response = np.empty_like(t_s)
     for i in range(t_s.size):
         response[i] = state[OUTPUTS[output]]

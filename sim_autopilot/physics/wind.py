@@ -142,7 +142,6 @@ class WindModel:
         turbulence: Turbulence | float,
         *,
         gust: Gust | None = None,
-        height_m: float = HEIGHT_M,
     ) -> None:
         """Start in the steady state.
 
@@ -152,12 +151,11 @@ class WindModel:
             direction_rad: the mean wind blows towards, from east to north.
             turbulence: severity, or the vertical standard deviation in m/s.
             gust: one, or none.
-            height_m: for which the turbulence is computed.
         """
         self._generator = np.random.default_rng(seed)
         self._mean_m_s = mean_m_s
         self._along = (math.cos(direction_rad), math.sin(direction_rad))
-        self._dryden = dryden(turbulence, height_m)
+        self._dryden = dryden(turbulence)
         self._gust = gust
         self._t_s = 0.0
         n = self._generator.standard_normal(5).tolist()
