@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from companion.config.integrity import ReceiverFrames
 from companion.core.data import Array, Forecast, Measurement, Quantity, RangeReading
 from companion.integrity.contradictions import Contradictions, update_contradictions
 from companion.integrity.frames import (
@@ -218,7 +219,14 @@ def place_by_deck(vehicle: VehicleMemory, pad: PadPath | None, inputs: StepInput
 
 
 def _are_frames_one(vehicle: VehicleMemory, inputs: StepInputs, system: System) -> bool:
-    return are_frames_one(vehicle.phases, system.config.integrity.receiver_frames, inputs.monotonic_ns)
+    """Return whether both receivers have one frame; by their phases alone only where no detector is there to be asked.
+
+    One whose stamps are wrong is there, and what it sees may show that the frames are apart.
+    """
+    configured = system.config.integrity.receiver_frames
+    if configured is ReceiverFrames.AUTO and inputs.vehicle.has_unplaced_sightings:
+        return False
+    return are_frames_one(vehicle.phases, configured, inputs.monotonic_ns)
 
 
 def _is_finite(forecast: Forecast) -> bool:

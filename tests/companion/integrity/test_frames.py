@@ -22,12 +22,12 @@ from companion.integrity.frames import (
 )
 from companion.integrity.sightings import SightingWatch
 from companion.integrity.way import WayError
-from companion.landing.state.vehicle_update import update_vehicle
+from companion.landing.state.vehicle_update import predict_pad, update_vehicle
 from companion.situation.phases import Phase
 from link.messages import Vector3
 from link.records import replace
 from tests.companion.facts import changed, situation
-from tests.companion.world import Flight, reached
+from tests.companion.world import CONFIG, Flight, reached
 
 STEP_NS = 100_000_000
 HOLD_STEPS = 20
@@ -136,6 +136,22 @@ def test_inertial_unit_that_is_found_to_be_wrong_takes_no_frame_for_good() -> No
     found = replace(inputs, vehicle=replace(inputs.vehicle, has_doubted_unit=True))
     for given_inputs, has_stepped in ((inputs, True), (found, False)):
         assert update_vehicle(led_astray, given_inputs, flight.system).phases.has_vehicle_stepped is has_stepped
+
+
+@pytest.mark.parametrize(
+    ("config", "is_placed", "is_one"),
+    [(CompanionConfig(), True, True), (CompanionConfig(), False, False), (CONFIG, False, True)],
+    ids=["phases alone", "phases beside a detector of wrong stamps", "configured"],
+)
+def test_phases_alone_vouch_for_no_frame_beside_a_detector_whose_sightings_cannot_be_placed(
+    config: CompanionConfig, *, is_placed: bool, is_one: bool
+) -> None:
+    flight = reached(Phase.CHASE)
+    fixed, inputs = replace(flight.memory.vehicle, phases=after(FIXED)), flight.inputs()
+    inputs = replace(inputs, vehicle=replace(inputs.vehicle, has_unplaced_sightings=not is_placed))
+    _, pad = predict_pad(Phase.CHASE, fixed, inputs, replace(flight.system, config=config))
+    assert pad is not None
+    assert pad.has_one_frame is is_one
 
 
 def test_stamps_that_go_back_vouch_for_no_receiver_that_has_stepped() -> None:
