@@ -68,7 +68,7 @@ class StreamRules:
 
     Attributes:
         messages: every message that it can send, by id, with default rates.
-        builders: of messages that only this firmware sends.
+        builders: of messages that only this firmware sends, or fills in its own way.
         groups: message ids by the MAV_DATA_STREAM that starts them.
         group_parameters: ends of the names of the parameters that keep a group's rate, by MAV_DATA_STREAM.
         on_contact: message ids that begin only when somebody has spoken.

@@ -28,6 +28,7 @@ from companion.autopilots.messages import (
     ask_for_control,
     ask_to_arm,
     ask_to_disarm,
+    is_carried_on,
     local_ned_setpoint,
     set_mode,
     take_off,
@@ -37,6 +38,7 @@ from companion.autopilots.messages import (
 from companion.autopilots.response import Cascade, Shaping
 from companion.core.data import GRAVITY_M_S2, FlightLimits, Setpoint
 from link.frames.geodesy import Projection
+from link.mavlink.answers import ANSWER_GAP_S
 from link.mavlink.dialect import Message, mavlink
 from link.records import replace
 
@@ -143,6 +145,10 @@ class ArduPilotDriver:
     def setpoint_message(self, setpoint: Setpoint, boot_ms: int, target_system: int) -> Message:
         """Return SET_POSITION_TARGET_LOCAL_NED; a group of it that is masked in part would mean "stop"."""
         return local_ned_setpoint(setpoint, boot_ms, target_system)
+
+    def flies_to(self, sent: Message, told: Message) -> bool:
+        """Return whether it is the setpoint as carried on since it came (AC_PosControl::input_pos_vel_accel_xy)."""
+        return is_carried_on(sent, told, ANSWER_GAP_S)
 
     def limits(self, wanted: FlightLimits, parameters: Mapping[str, float]) -> FlightLimits:
         """Return `wanted` cut to ArduCopter's limits of speed, climb, descent, tilt and jerk.

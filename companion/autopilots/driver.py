@@ -110,7 +110,11 @@ STREAMS_HZ = {
 """Messages that are read of every autopilot beside its motion, by id."""
 
 
-_MOTION_IDS = (mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION, mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED)
+_MOTION_IDS = (
+    mavlink.MAVLINK_MSG_ID_ATTITUDE_QUATERNION,
+    mavlink.MAVLINK_MSG_ID_LOCAL_POSITION_NED,
+    mavlink.MAVLINK_MSG_ID_POSITION_TARGET_LOCAL_NED,
+)
 
 
 class Driver(Protocol):
@@ -192,6 +196,9 @@ class Driver(Protocol):
         Raises:
             ValueError: a value of the setpoint is not finite.
         """
+
+    def flies_to(self, sent: Message, told: Message) -> bool:
+        """Return whether `told`, its POSITION_TARGET_LOCAL_NED, shows that it flies to the setpoint `sent`."""
 
     def limits(self, wanted: FlightLimits, parameters: Mapping[str, float]) -> FlightLimits:
         """Return `wanted` cut to what the autopilot's own parameters allow."""

@@ -9,6 +9,7 @@ from companion.autopilots.late_reports import LateReports
 from companion.autopilots.limits import LimitQuestions
 from companion.autopilots.pilot_switch import PilotSwitch
 from companion.autopilots.response import Cascade, Shaping
+from companion.autopilots.sent_setpoints import SentSetpoints
 from companion.autopilots.state import AutopilotState, has_frame_moved, shift_reports, update_state
 from companion.config.autopilot import AutopilotConfig
 from companion.core.data import FlightLimits, Setpoint
@@ -56,7 +57,7 @@ class AutopilotLink:
         self._motion_rate_hz = motion_rate_hz
         self.state = AutopilotState(geoid_height_m=config.geoid_height_m)
         self.driver: Driver | None = None
-        self.bad_setpoints = 0
+        self.setpoints = SentSetpoints(session)
         self._acknowledgements: list[tuple[int, int]] = []
         self._unanswered: dict[int, int] = {}
         self._origin_asked_ns: int | None = None
@@ -122,17 +123,13 @@ class AutopilotLink:
         return None if self.driver is None else self.driver.shaping(self.state.parameters)
 
     def send_setpoint(self, setpoint: Setpoint, local_ns: int) -> None:
-        """Send a setpoint for the flight; one that the message cannot hold is counted and left out."""
-        target = self.session.target_system_id
-        if self.driver is None or target is None:
-            return
-        boot_ns = self.session.clock.local_to_boot_ns(local_ns) or 0
-        try:
-            message = self.driver.setpoint_message(setpoint, boot_ns // 1_000_000, target)
-        except ValueError:
-            self.bad_setpoints += 1
-            return
-        self.session.send(message)
+        """Send a setpoint for the flight, once an autopilot is found."""
+        if self.driver is not None:
+            self.setpoints.send(setpoint, self.driver, local_ns)
+
+    def ask_often(self, *, is_landing: bool) -> None:
+        """Ask for the time as often as setpoints are sent, where nothing else tells from instant to instant of them."""
+        self.session.clock_sync.asks_often = is_landing and self.setpoints.answers.sent_ns is None
 
     def send_commands(self, commands: tuple[AutopilotCommand, ...], local_ns: int) -> None:
         """Send commands; their acknowledgements come back by `take_acknowledgements`.
@@ -177,6 +174,8 @@ class AutopilotLink:
             self.state = replace(self.state, parameters=parameters)
         elif message.get_type() == "RC_CHANNELS":
             self.pilot_switch.hear(message, local_ns)
+        elif message.get_type() == "POSITION_TARGET_LOCAL_NED":
+            self.setpoints.hear(message, driver, local_ns)
         before = self.state
         self.state = update_state(before, message, self.session.clock, driver)
         if has_frame_moved(before, self.state):
@@ -194,6 +193,7 @@ class AutopilotLink:
         self._origin_asked_ns = None
         self._questions.ask_all()
         self.pilot_switch.forget()
+        self.setpoints.start_over()
 
     def _take_answer(self, command: int, ticket: int | None) -> None:
         if self._unanswered.get(command) == ticket:

@@ -16,6 +16,7 @@ _IGNORE_VELOCITY = 0b0000_0000_0011_1000
 _IGNORE_ACCELERATION = 0b0000_0001_1100_0000
 _IGNORE_YAW_RATE = 0b0000_1000_0000_0000
 _ZERO = (0.0, 0.0, 0.0)
+_ALIKE = 1e-3  # 16 km from the origin single precision has millimetres
 _VALUE_MAX = 1e7  # more than any place or motion; single precision holds it
 
 Requested = tuple[DriverMemory, tuple[AutopilotCommand, ...]]
@@ -53,6 +54,21 @@ def local_ned_setpoint(setpoint: Setpoint, boot_ms: int, target_system: int) -> 
         *values,
         0.0,
     )
+
+
+def have_same_place(sent: Message, told: Message) -> bool:
+    """Return whether two setpoints name one place, but for what single precision makes of it."""
+    return all(abs(getattr(told, name) - getattr(sent, name)) < _ALIKE for name in ("x", "y", "z"))
+
+
+def is_carried_on(sent: Message, told: Message, carried_s: float) -> bool:
+    """Return whether `told` is a setpoint that its own acceleration has carried on for at most `carried_s`."""
+    for axis in "xyz":
+        asked_m_s2, told_m_s2 = getattr(sent, f"af{axis}"), getattr(told, f"af{axis}")
+        gained_m_s = getattr(told, f"v{axis}") - getattr(sent, f"v{axis}")
+        if abs(told_m_s2 - asked_m_s2) > _ALIKE or abs(gained_m_s) > abs(asked_m_s2) * carried_s + _ALIKE:
+            return False
+    return True
 
 
 def ask(memory: DriverMemory, command: AutopilotCommand, monotonic_ns: int, again_s: float = ASK_AGAIN_S) -> Requested:

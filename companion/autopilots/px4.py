@@ -24,6 +24,7 @@ from companion.autopilots.messages import (
     ask_for_control,
     ask_to_arm,
     ask_to_disarm,
+    have_same_place,
     local_ned_setpoint,
     set_mode,
     with_answer,
@@ -39,6 +40,7 @@ from link.records import replace
 _MAIN_MODE_AUTO = 4
 _MAIN_MODE_OFFBOARD = 6
 _SUB_MODE_LOITER = 3
+_IGNORE_POSITION = 0b0000_0000_0000_0111
 _STREAM_FIRST_S = 0.5  # 0.3 s of setpoints were seen to suffice before OFFBOARD is granted
 _TILT_MAX_DEG = 45.0  # nothing is planned beyond
 # With the defaults of its versions 1.14 to 1.17.
@@ -72,7 +74,6 @@ class Px4Driver:
         mavlink.MAVLINK_MSG_ID_GLOBAL_POSITION_INT,
         mavlink.MAVLINK_MSG_ID_HIGHRES_IMU,
         mavlink.MAVLINK_MSG_ID_ODOMETRY,
-        mavlink.MAVLINK_MSG_ID_POSITION_TARGET_LOCAL_NED,
         mavlink.MAVLINK_MSG_ID_SERVO_OUTPUT_RAW,
         mavlink.MAVLINK_MSG_ID_VFR_HUD,
     )
@@ -114,6 +115,14 @@ class Px4Driver:
     def setpoint_message(self, setpoint: Setpoint, boot_ms: int, target_system: int) -> Message:
         """Return SET_POSITION_TARGET_LOCAL_NED."""
         return local_ned_setpoint(setpoint, boot_ms, target_system)
+
+    def flies_to(self, sent: Message, told: Message) -> bool:
+        """Return whether the place is the setpoint's; velocity and acceleration are the controller's own.
+
+        Once its land detector has felt the ground it names no place: it presses down whatever setpoints ask for
+        (MulticopterPositionControl::Run).
+        """
+        return bool(told.type_mask & _IGNORE_POSITION) or have_same_place(sent, told)
 
     def limits(self, wanted: FlightLimits, parameters: Mapping[str, float]) -> FlightLimits:
         """Return `wanted` cut to PX4's speed, climb, descent and tilt limits.

@@ -88,7 +88,7 @@ class Reason(Enum):
     TOO_FAR_FROM_START = "too far from the start"
     BELOW_PAD = "below the pad without contact"
     NOTHING_TOUCHED = "nothing touched"
-    SETPOINTS_UNHEARD = "the autopilot answers nothing: the drone may hover"
+    SETPOINTS_UNHEARD = "nothing shows that the autopilot hears setpoints: the drone may hover"
     ROAD_BELOW = "range finder sees the road where the pad should be"
     STRAYS = "not over the pad in time"
     ALIGNMENT_LOST = "alignment lost"

@@ -214,11 +214,11 @@ class CompanionNode:
             station=station,
             leaving=self._leaving,
             shaping=self.autopilot.shaping if kept is None else kept.shaping,
-            link_delay=link_delay(self.autopilot.session.clock_sync, local_ns),
+            link_delay=link_delay(self.autopilot.session.clock_sync, self.autopilot.setpoints.answers, local_ns),
         )
         self.inputs = inputs
         self.memory, self.outputs = companion_step(self.memory, inputs, self.system)
-        self.autopilot.session.clock_sync.asks_often = self.phase in LANDING_PHASES | {Phase.ABORT}
+        self.autopilot.ask_often(is_landing=self.phase in LANDING_PHASES | {Phase.ABORT})
         self._send(inputs, self.outputs, local_ns)
 
     def _start_refusal(self, switched: Command | None) -> CommandReply | None:

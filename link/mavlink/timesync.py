@@ -3,6 +3,7 @@
 Source: MAVLink time synchronization protocol v2, https://mavlink.io/en/services/timesync.html.
 """
 
+from link.mavlink.answers import Answers, with_answer
 from link.mavlink.clock_config import ClockConfig
 from link.mavlink.clock_map import UNIX_TIME_MIN_NS, ClockMap, RoundTrip, with_round_trip, with_system_time
 from link.mavlink.dialect import Message, mavlink
@@ -13,9 +14,6 @@ _FAST_PERIOD_NS = 100_000_000
 _FAST_COUNT = 20  # so many are asked so quickly at first, 2 s worth
 _PERIOD_NS = 500_000_000
 _OFTEN_PERIOD_NS = 20_000_000  # as often as setpoints are sent
-ANSWER_GAP_S = 0.2
-"""Between answered questions, from which on the autopilot may not hear. A link that loses a fifth of all frames on each
-way has it once in 27,000 times."""
 _CLOCK = ClockConfig()
 _MS_NS = 1_000_000
 _BOOT_TURN_NS = (1 << 32) * _MS_NS
@@ -67,9 +65,7 @@ class ClockSync:
     Attributes:
         clock: what is known of the clocks.
         round_trips: answers used.
-        answered_ns: local time at which the newest question that was answered had been asked, None before the first.
-        answering_since_ns: local time since which answers have come without a gap of `ANSWER_GAP_S`, None before the
-            first.
+        answers: how the questions are answered.
         asks_often: to know from instant to instant that the autopilot hears. Of these answers the clocks learn nothing.
     """
 
@@ -77,8 +73,7 @@ class ClockSync:
         self._takes_own_utc = takes_own_utc
         self.clock = ClockMap()
         self.round_trips = 0
-        self.answered_ns: int | None = None
-        self.answering_since_ns: int | None = None
+        self.answers = Answers()
         self.asks_often = False
         self._often = Timer(_OFTEN_PERIOD_NS)
         self._timer = Timer(_FAST_PERIOD_NS)
@@ -115,9 +110,7 @@ class ClockSync:
         if message.tc1 == 0:
             return mavlink.MAVLink_timesync_message(tc1=max(t_ns, 1), ts1=message.ts1)  # 0 would be a question
         if message.ts1 in self._asked_ns and _is_boot_time(message.tc1):
-            if self.answered_ns is None or message.ts1 - self.answered_ns > ANSWER_GAP_S * 1e9:
-                self.answering_since_ns = t_ns
-            self.answered_ns = max(message.ts1, self.answered_ns or message.ts1)
+            self.answers = with_answer(self.answers, message.ts1, t_ns)
             if self._asked_ns.pop(message.ts1):
                 self.round_trips += 1
                 self.clock = with_round_trip(self.clock, RoundTrip(message.ts1, t_ns, message.tc1), _CLOCK)
@@ -133,7 +126,7 @@ class ClockSync:
     def start_over(self) -> None:
         """Forgets everything, as after a restart; answers to earlier questions count no more."""
         self.clock = ClockMap()
-        self.answered_ns = self.answering_since_ns = None
+        self.answers = Answers()
         self._asked_ns.clear()
         self._fast_left = _FAST_COUNT
         self._timer = Timer(_FAST_PERIOD_NS)

@@ -48,6 +48,7 @@ class FaultFlight(Lockstep):
         self.scenario = scenario
         self._cut_until_s = 0.0
         self._unheard_until_s = 0.0
+        self._unsteered_until_s = 0.0
         self._stopped_until_s = 0.0
         self._vehicle_held_until_s = 0.0
         self._vehicle_cut_until_s = 0.0
@@ -129,6 +130,10 @@ class FaultFlight(Lockstep):
     def cut_way_up(self, duration_s: float) -> None:
         """Let nothing of the companion's through to the autopilot; it hears on."""
         self._unheard_until_s = self.recording.elapsed_s + duration_s
+
+    def lose_setpoints(self, duration_s: float) -> None:
+        """Let none of the companion's setpoints through; all else comes to the autopilot."""
+        self._unsteered_until_s = self.recording.elapsed_s + duration_s
 
     def stop_companion(self, duration_s: float) -> None:
         """Let the companion's process stand still, as by SIGSTOP; what is sent to it waits for it."""
@@ -217,8 +222,12 @@ class FaultFlight(Lockstep):
 
     def _send(self, frames: Sequence[bytes], t_ns: int) -> None:
         self.setpoints += sum(one.get_type() == _SETPOINT for one in _messages(frames))
-        is_unheard = self._link_is_cut or self.recording.elapsed_s < self._unheard_until_s
-        super()._send([] if is_unheard else frames, t_ns)
+        now_s = self.recording.elapsed_s
+        if self._link_is_cut or now_s < self._unheard_until_s:
+            frames = []
+        elif now_s < self._unsteered_until_s:
+            frames = [frame for frame in frames if not any(one.get_type() == _SETPOINT for one in _messages([frame]))]
+        super()._send(frames, t_ns)
 
     @property
     def _link_is_cut(self) -> bool:

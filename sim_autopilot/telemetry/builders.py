@@ -64,5 +64,5 @@ def build_message(stream: Stream, memory: AutopilotMemory, config: AutopilotConf
     rules, message_id = config.firmware.streams, stream.message_id
     if message_id in rules.on_contact and not memory.links.here.ground_station:
         return None
-    builder = BUILDERS.get(message_id) or rules.builders.get(message_id) or config.services.builders[message_id]
+    builder = rules.builders.get(message_id) or BUILDERS.get(message_id) or config.services.builders[message_id]
     return builder(memory, config)

@@ -94,7 +94,10 @@ def odometry(memory: AutopilotMemory, _config: AutopilotConfig) -> Message:
 
 
 def position_target(memory: AutopilotMemory, _config: AutopilotConfig) -> Message | None:
-    """Return POSITION_TARGET_LOCAL_NED: what is followed, None while nothing is."""
+    """Return POSITION_TARGET_LOCAL_NED: the setpoint that is followed, None while nothing is.
+
+    PX4's own tells the place of the setpoint, and of its controller the velocity and acceleration that it asks for.
+    """
     following = memory.course.following
     if following is None:
         return None

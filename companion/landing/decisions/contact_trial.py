@@ -2,16 +2,16 @@
 
 An autopilot that hears no setpoint hovers above the last one, and the signs agree as on a pad; the range finder's too
 if it hovers low enough. A press shows that only if the autopilot hears it, and follows: ArduCopter, which had begun to
-brake, sank no faster for 0.2 s after it was pressed anew. So no trial goes on while it answers no question of the time,
-nor for a second afterwards. From the chase on it is asked as often as setpoints are sent: over a link that loses a
-fifth of all frames each way 0.2 s pass without an answer once in 27,000 times.
+brake, sank no faster for 0.2 s after it was pressed anew. So no trial goes on while it flies to none of the setpoints
+of late, nor for a second afterwards. One that does not tell what it flies to is asked for the time as often as
+setpoints are sent: while it answers, it hears them too, unless they alone are lost.
 """
 
 from companion.config.companion import CompanionConfig
 from companion.landing.decisions.contact import Verdict, trial_press_m_s2, trial_s, verdict
 from companion.landing.decisions.contact_signs import signs_of
 from companion.situation.situation import Situation
-from link.mavlink.timesync import ANSWER_GAP_S
+from link.mavlink.answers import ANSWER_GAP_S
 
 _FOLLOWS_AGAIN_S = 1.0  # after it has heard nothing for a moment
 
@@ -42,7 +42,7 @@ def is_disputed_contact_tried(s: Situation, c: CompanionConfig) -> bool:
 
 
 def is_unheard(s: Situation, c: CompanionConfig) -> bool:
-    """Return whether the autopilot has answered nothing for so long that the drone hovers, or seems to stand so.
+    """Return whether nothing has shown for so long that it is heard that the drone hovers, or seems to stand so.
 
     It would come down too fast to where its setpoint has sunk meanwhile, as soon as it hears of it.
     """
@@ -60,7 +60,7 @@ def _is_heard(s: Situation) -> bool:
 
 
 def _is_answering(s: Situation) -> bool:
-    """Return whether it still answers; a drone that sinks to a contact takes longer to seem to stand than the gap."""
+    """Return whether they are heard; a drone that sinks to a contact takes longer to seem to stand than the gap."""
     return s.following.unanswered_s <= ANSWER_GAP_S + 2.0 * s.following.late_s
 
 

@@ -5,10 +5,12 @@ The board is that of its simulation; the estimator has converged once positions 
 
 from math import atan2, degrees, hypot, pi
 
-from link.frames.rotations import frd_from_flu, yaw_ned_from_enu
+from link.frames.rotations import frd_from_flu, ned_from_enu, yaw_ned_from_enu
 from link.mavlink.dialect import Message, mavlink
-from sim_autopilot.core.places import geodetic
+from sim_autopilot.core.modes import Mode
+from sim_autopilot.core.places import geodetic, local_from_world
 from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, has_passed
+from sim_autopilot.setpoints.guided_setpoint import Task
 from sim_autopilot.telemetry.motion import attitude, wire_place
 from sim_autopilot.telemetry.sensors import scaled_imu, scaled_pressure, truth
 from sim_autopilot.telemetry.status import boot_ms
@@ -116,6 +118,29 @@ def nav_controller_output(memory: AutopilotMemory, config: AutopilotConfig) -> M
     )
 
 
+def position_target(memory: AutopilotMemory, _config: AutopilotConfig) -> Message | None:
+    """Return POSITION_TARGET_LOCAL_NED: GUIDED's setpoint, carried on since it came; None in any other mode.
+
+    Source: GCS_MAVLINK_Copter::send_position_target_local_ned. It tells no heading.
+    """
+    guided = memory.course.guided
+    if memory.modes.mode is not Mode.OFFBOARD or guided.attitude is not None:
+        return None
+    wish = guided.wish
+    has_place = wish.task not in (Task.VELOCITY, Task.ACCELERATION)
+    place = local_from_world(memory.places.origin, wish.position) if has_place else (0.0, 0.0, 0.0)
+    return mavlink.MAVLink_position_target_local_ned_message(
+        boot_ms(memory),
+        mavlink.MAV_FRAME_LOCAL_NED,
+        _TARGET_MASKS[wish.task],
+        *ned_from_enu(place),
+        *ned_from_enu(wish.velocity),
+        *ned_from_enu(wish.acceleration),
+        0.0,
+        0.0,
+    )
+
+
 def position_target_global(memory: AutopilotMemory, _config: AutopilotConfig) -> Message | None:
     """Return POSITION_TARGET_GLOBAL_INT: the place that is followed, None while there is none."""
     following = memory.course.following
@@ -138,5 +163,12 @@ def position_target_global(memory: AutopilotMemory, _config: AutopilotConfig) ->
     )
 
 
+_TARGET_MASKS = {
+    Task.POSITION: 0b1101_1111_1000,
+    Task.TAKEOFF: 0b1101_1111_1000,
+    Task.FOLLOW: 0b1100_0000_0000,
+    Task.VELOCITY: 0b1100_0000_0111,
+    Task.ACCELERATION: 0b1100_0011_1111,
+}
 _PLACE_ONLY = 0b1101_1111_1000
 """The mask that leaves everything out but the place."""

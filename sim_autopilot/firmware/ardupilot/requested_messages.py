@@ -99,6 +99,7 @@ BUILDERS: Mapping[int, Builder] = MappingProxyType(
         mavlink.MAVLINK_MSG_ID_MEMINFO: messages.meminfo,
         mavlink.MAVLINK_MSG_ID_HWSTATUS: messages.hwstatus,
         mavlink.MAVLINK_MSG_ID_NAV_CONTROLLER_OUTPUT: messages.nav_controller_output,
+        mavlink.MAVLINK_MSG_ID_POSITION_TARGET_LOCAL_NED: messages.position_target,
         mavlink.MAVLINK_MSG_ID_POSITION_TARGET_GLOBAL_INT: messages.position_target_global,
         mavlink.MAVLINK_MSG_ID_SIMSTATE: messages.simstate,
         mavlink.MAVLINK_MSG_ID_SCALED_IMU2: messages.scaled_imu2,
@@ -112,4 +113,4 @@ BUILDERS: Mapping[int, Builder] = MappingProxyType(
         mavlink.MAVLINK_MSG_ID_ESC_TELEMETRY_1_TO_4: esc_telemetry,
     }
 )
-"""Of all messages that only ArduPilot sends, these and those of `messages`."""
+"""Of all messages that only ArduPilot sends, or that it fills in its own way, these and those of `messages`."""

@@ -100,7 +100,7 @@ def test_setpoint_that_is_not_finite_is_counted_and_not_sent() -> None:
         )
         talk.link.send_setpoint(setpoint, talk.t_ns)
     talk.run(0.1)
-    assert talk.link.bad_setpoints == 3
+    assert talk.link.setpoints.bad == 3
     assert not talk.autopilot.setpoints()
 
 

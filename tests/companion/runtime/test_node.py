@@ -301,5 +301,5 @@ def test_nothing_a_vehicle_says_makes_a_setpoint_absurd(
         setup.run(0.06)
     setup.run(0.5)
     assert all(_is_sound(message) for message in setup.autopilot.setpoints())
-    assert setup.node.autopilot.bad_setpoints == 0
+    assert setup.node.autopilot.setpoints.bad == 0
     assert abs(setup.autopilot.setpoints()[-1].x) < 1e3

@@ -91,7 +91,8 @@ class FakeAutopilot:
 
     def obey(self, message: Message) -> None:
         results = self.results.get(message.command, (mavlink.MAV_RESULT_ACCEPTED,))
-        if message.command == mavlink.MAV_CMD_SET_MESSAGE_INTERVAL and mavlink.MAV_RESULT_ACCEPTED in results:
+        is_granted = message.command == mavlink.MAV_CMD_SET_MESSAGE_INTERVAL and mavlink.MAV_RESULT_ACCEPTED in results
+        if is_granted and message.param1 != mavlink.MAVLINK_MSG_ID_POSITION_TARGET_LOCAL_NED:  # it tells of no setpoint
             self.intervals_ns[int(message.param1)] = round(message.param2 * 1000)
         for result in results:
             self.acknowledge(message.command, result)

@@ -153,13 +153,13 @@ def test_answers_to_questions_from_before_a_restart_are_not_learned_from() -> No
 def test_questions_in_between_tell_that_the_autopilot_hears_and_nothing_of_the_clocks() -> None:
     sync = ClockSync()
     asked_ns = [t_ns for t_ns in range(START_NS, START_NS + 90 * MS, 5 * MS) if sync.poll(t_ns) is not None]
-    assert (asked_ns, ClockSync().answered_ns) == ([START_NS], None)
+    assert (asked_ns, ClockSync().answers.sent_ns) == ([START_NS], None)
     sync.asks_often = True
     more_ns = [t_ns for t_ns in range(START_NS + 5 * MS, START_NS + 90 * MS, 5 * MS) if sync.poll(t_ns) is not None]
     assert more_ns == [START_NS + ms * MS for ms in (5, 25, 45, 65, 85)]
     sync.timesync(mavlink.MAVLink_timesync_message(tc1=BOOTED_NS, ts1=more_ns[1]), START_NS + 91 * MS)
     sync.timesync(mavlink.MAVLink_timesync_message(tc1=BOOTED_NS, ts1=more_ns[0]), START_NS + 92 * MS)
-    assert sync.answered_ns == more_ns[1]
+    assert sync.answers.sent_ns == more_ns[1]
     assert sync.clock.local_to_boot is None
     assert sync.round_trips == 0
 
@@ -171,7 +171,7 @@ def test_answers_go_on_from_the_first_after_a_gap() -> None:
         question = sync.poll(START_NS + ms * MS)
         if question is not None and not 300 <= ms < 520 and not 600 <= ms < 780:
             sync.timesync(mavlink.MAVLink_timesync_message(tc1=BOOTED_NS, ts1=question.ts1), START_NS + (ms + 9) * MS)
-        since_ns.append(sync.answering_since_ns)
+        since_ns.append(sync.answers.since_ns)
     assert set(since_ns) == {START_NS + 9 * MS, START_NS + 529 * MS}
 
 
