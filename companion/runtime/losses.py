@@ -28,7 +28,7 @@ class Losses:
         """Say what has been lost since the last call and is not told yet."""
         if not self._are_records_told:
             self._say_records()
-        if not self._are_setpoints_told and (withheld := self._node.autopilot.bad_setpoints):
+        if not self._are_setpoints_told and (withheld := self._node.autopilot.setpoints.bad):
             self._are_setpoints_told = True
             self._log.warning("setpoints are withheld: not finite, or absurd", withheld=withheld)
             self._node.warn("withholds setpoints that are not finite")

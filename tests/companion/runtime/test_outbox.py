@@ -28,6 +28,7 @@ class StalledSession:
 
     def __init__(self) -> None:
         self.taken: list[str] = []
+        self.unpublished = 0
         self.is_waiting, self.goes_on = threading.Event(), threading.Event()
         self.wake_up = WakeUp()
 
