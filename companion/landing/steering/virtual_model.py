@@ -184,20 +184,22 @@ def tracking_error_max_m(
 def _update_leans(
     tracking: Tracking, own: OwnState, own_ns: int, since_s: float, response: ResponseModel | None
 ) -> tuple[Array, Array]:
-    """Return the means of what the drone leans beyond what accelerates it, and beyond what the model accelerates by.
+    """Return the means of the thrust across beyond what accelerates the drone, and of the lean beyond the model's.
 
-    The first is by the change of its own velocity, the second by the model when the autopilot was to lean as now. A
-    drone that speeds up as it sinks leans more for the same thrust across.
+    The first is by the change of its own velocity: a drone that speeds up as it sinks leans more for the same thrust
+    across. The second is by the model when the autopilot was to lean as now; a change of velocity would be as noisy as
+    its mean is short.
     """
     air, holds = tracking.air_enu_m_s2, tracking.holds_enu_m_s2
     x, y, up = rotate(own.orientation_wxyz, (0.0, 0.0, 1.0))
     if up < UPRIGHT_MIN or not 0.0 < since_s < BREAK_S:
         return air, holds
+    leans = np.array([x, y]) * (GRAVITY_M_S2 / up)
     changed = (np.array(own.velocity_enu_m_s) - tracking.velocity_enu_m_s) / since_s
-    leans = np.array([x, y]) * ((GRAVITY_M_S2 + float(changed[2])) / up)
+    across = leans * (1.0 + float(changed[2]) / GRAVITY_M_S2)
     lag_s = 0.0 if response is None else response.cascade.lean_lag_s
     _, _, asked = _model_at(tracking, own_ns - round(lag_s * 1e9))
-    air = air - math.expm1(-since_s / _AIR_MEAN_S) * (leans - changed[:2] - air)
+    air = air - math.expm1(-since_s / _AIR_MEAN_S) * (across - changed[:2] - air)
     return np.asarray(air), np.asarray(holds - math.expm1(-since_s / _HOLDS_MEAN_S) * (leans - asked[:2] - holds))
 
 
