@@ -55,7 +55,7 @@ def test_drone_is_asked_for_less_than_twice_as_much_over_a_poor_link(firmware: F
 @pytest.mark.slow
 @pytest.mark.parametrize(("track", "seed"), [("straight_5", 84205), ("straight_15", 84206)])
 def test_drone_that_its_path_has_left_is_over_the_car_again_without_swinging(track: str, seed: int) -> None:
-    """Else it swings by 2.1 and 3.7 m from over the pad on: ArduPilot's path is of limited jerk, and setpoints are lost."""
+    """Else it swings by 2.1 and 3.7 m over the pad: ArduPilot's path is of limited jerk, and setpoints get lost."""
     run = Lockstep(load_scenario(f"{track}{DEGRADED}+firmware=ardupilot"), seed)
     largest_m, begun_s = 0.0, None
     while run.recording.elapsed_s < (begun_s or 60.0) + SWINGS_S and run.companion.phase is not Phase.TOUCHDOWN:
