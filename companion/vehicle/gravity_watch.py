@@ -20,7 +20,8 @@ _OFF_MAX_M_S2 = 1.5
 _UP_MAX_M_S2 = 0.7
 # No road vehicle turns or brakes so hard for so long: 0.7 of gravity, which a horizontal axis tells whole.
 _LEVEL_MAX_M_S2 = 0.7 * GRAVITY_M_S2
-_MOST_M_S2 = 100.0  # counts for more: one absurd reading says nothing of the others
+FORCE_MAX_M_S2 = 100.0
+"""No specific force of an axis counts for more: one absurd reading says nothing of the others."""
 
 
 class GravityWatch:
@@ -39,7 +40,7 @@ class GravityWatch:
             force_flu_m_s2: along the vehicle's axes.
             q_WV: its attitude, None of a unit that tells none.
         """
-        x, y, z = (min(max(one, -_MOST_M_S2), _MOST_M_S2) for one in force_flu_m_s2)
+        x, y, z = (min(max(one, -FORCE_MAX_M_S2), FORCE_MAX_M_S2) for one in force_flu_m_s2)
         felt_m_s2 = (x, y, z) if q_WV is None else _level((x, y, z), q_WV)
         passed_s = 0.0 if self._newest_ns is None else min(max((t_ns - self._newest_ns) * 1e-9, 0.0), STEP_MAX_S)
         self._newest_ns = t_ns

@@ -18,7 +18,7 @@ from link.zenoh.keys import Keys
 VELOCITY_STD_M_S = 0.3
 """Of a velocity whose message states no covariance: plain GNSS."""
 
-_POSITION_STD_M = 1.5  # likewise of a position
+_POSITION_STD_M = 1.5  # of a position whose message states no covariance: plain GNSS
 _VERTICAL_VELOCITY_STD_M_S = 100.0  # of one that is not measured: says nothing
 
 # No sensor is better than this; a smaller stated variance (0 for one axis is not rare) is a singular one to a filter.

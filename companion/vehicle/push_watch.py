@@ -13,11 +13,14 @@ from operator import itemgetter
 from typing import NamedTuple
 
 from companion.core.data import STEP_MAX_S
+from companion.vehicle.gravity_watch import FORCE_MAX_M_S2
+from companion.vehicle.told_motion import Told
 
 _WINDOW_S, _WINDOW_MAX_S = 1.0, 1.5
 _LAGS_S = (0.0, 0.5, 1.0)
 _KEPT_S = 4.0
 _CHANGE_MIN_M_S = 1.0  # in a window, below which it shows nothing: a grade adds as much
+_BRAKE_MAX_M_S2 = 12.0  # tyres grip dry asphalt with a friction of 1.2 at most: what changes faster is told wrong
 _CHANGES_MIN_M_S = 3.0  # in all
 _WINDOWS = 10
 _FELT_MIN, _FELT_MAX = 0.3, 3.0  # of what the speed has changed; a grade and a cheap unit's offset are half of it
@@ -30,15 +33,6 @@ class _Felt(NamedTuple):
     t_ns: int
     sum_m_s: float
     yaw_rad: float
-
-
-class _Told(NamedTuple):
-    """A velocity, m/s, and the variance of one axis."""
-
-    t_ns: int
-    east: float
-    north: float
-    variance: float
 
 
 class _Window(NamedTuple):
@@ -59,7 +53,7 @@ class PushWatch:
     def __init__(self) -> None:
         self.doubt: str | None = None
         self._felt: list[_Felt] = []
-        self._told: list[_Told] = []
+        self._told: list[Told] = []
         self._windows: list[_Window] = []
         self._is_level = False
 
@@ -75,13 +69,14 @@ class PushWatch:
         passed_s = (t_ns - newest.t_ns) * 1e-9
         if not 0.0 <= passed_s <= STEP_MAX_S:
             self._felt, passed_s = [], 0.0
-        self._felt.append(_Felt(t_ns, newest.sum_m_s + ahead_m_s2 * passed_s, yaw_rad))
+        felt_m_s2 = min(max(ahead_m_s2, -FORCE_MAX_M_S2), FORCE_MAX_M_S2)
+        self._felt.append(_Felt(t_ns, newest.sum_m_s + felt_m_s2 * passed_s, yaw_rad))
 
     def take_velocity(self, t_ns: int, velocity_enu_m_s: Sequence[float], variance_m2_s2: float) -> None:
         """Take a velocity and the variance of one axis."""
         if self._told and not 0.0 < (t_ns - self._told[-1].t_ns) * 1e-9 <= _WINDOW_S:
             self._told = []
-        self._told.append(_Told(t_ns, float(velocity_enu_m_s[0]), float(velocity_enu_m_s[1]), variance_m2_s2))
+        self._told.append(Told(t_ns, float(velocity_enu_m_s[0]), float(velocity_enu_m_s[1]), variance_m2_s2))
         self._close()
         if self._felt:
             oldest_ns = self._felt[-1].t_ns - round(_KEPT_S * 1e9)
@@ -98,10 +93,11 @@ class PushWatch:
             return
         begun, ended = covered[0], covered[-1]
         self._told = [one for one in self._told if one.t_ns >= ended.t_ns]
-        if (ended.t_ns - begun.t_ns) * 1e-9 > _WINDOW_MAX_S:
+        lasted_s = (ended.t_ns - begun.t_ns) * 1e-9
+        if lasted_s > _WINDOW_MAX_S:
             return
         change_m_s = self._ahead_m_s(ended) - self._ahead_m_s(begun)
-        if abs(change_m_s) < _CHANGE_MIN_M_S:
+        if not _CHANGE_MIN_M_S <= abs(change_m_s) <= _BRAKE_MAX_M_S2 * lasted_s:
             return
         felt_m_s = tuple(self._felt_by(ended.t_ns, lag_s) - self._felt_by(begun.t_ns, lag_s) for lag_s in _LAGS_S)
         self._windows = [
@@ -116,7 +112,7 @@ class PushWatch:
     def _felt_by(self, t_ns: int, lag_s: float) -> float:
         return self._at(t_ns - round(lag_s * 1e9)).sum_m_s
 
-    def _ahead_m_s(self, told: _Told) -> float:
+    def _ahead_m_s(self, told: Told) -> float:
         yaw_rad = self._at(told.t_ns).yaw_rad
         return math.cos(yaw_rad) * told.east + math.sin(yaw_rad) * told.north
 

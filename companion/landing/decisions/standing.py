@@ -10,7 +10,7 @@ from companion.core.reasons import Cause, Reason
 from companion.landing.decisions.contact_trial import is_in_contact
 from companion.situation.situation import Situation
 
-_FRICTION_MIN = 0.5  # of rubber on painted metal when it is wet; dry 0.8
+_WET_FRICTION = 0.5  # of rubber on painted metal: a drone that slides may have less than its gear holds when dry
 
 
 def has_touched(s: Situation, c: CompanionConfig) -> bool:
@@ -19,7 +19,8 @@ def has_touched(s: Situation, c: CompanionConfig) -> bool:
     if a is None or not is_in_contact(s, c):
         return False
     room_m = a.pad_half_width_m - a.distance_m
-    return 0.5 * a.speed_m_s**2 < _FRICTION_MIN * GRAVITY_M_S2 * room_m
+    friction = min(_WET_FRICTION, c.touchdown.gear_friction)
+    return 0.5 * a.speed_m_s**2 < friction * GRAVITY_M_S2 * room_m
 
 
 def would_blow_off(s: Situation, c: CompanionConfig) -> bool:

@@ -39,8 +39,8 @@ class Tracking(Struct, frozen=True, kw_only=True, eq=False):
         lost_since_ns: of the first of those that followed each other within a second; None while there is none.
         deviation: (4, 2) horizontal state of `ResponseModel` then: from the model to the drone, and what moves it.
         air_enu_m_s2: (2,) horizontal thrust by mass that holds against the air, a mean of the last second.
-        holds_enu_m_s2: (2,) horizontal thrust by mass beyond what the model accelerates by, a mean of the last tenth of
-            a second: what holds against the air, and what makes up for the deviation.
+        holds_enu_m_s2: (2,) the same by the lean alone, as of a drone that keeps its climb, beyond what the model
+            accelerates by, a mean of the last tenth of a second: this, and what makes up for the deviation.
         velocity_enu_m_s: (3,) velocity of the drone then.
         compared_ns: monotonic time of the newest report that was compared; None before the first.
     """

@@ -107,3 +107,19 @@ def test_gaps_and_stamps_that_go_back_show_nothing() -> None:
         unit.pushes.take_force(round(t_s * 1e9), -9.0, YAW_RAD, is_level=True)
         unit.pushes.take_velocity(round(t_s * 1e9), (9.0 * index, 0.0, 0.0), 0.01)
     assert unit.doubts() == {}
+
+
+@pytest.mark.parametrize("wrong", [1e300, -1e300, 1e4, 90.0])
+@pytest.mark.parametrize("of_force", [True, False], ids=["force", "velocity"])
+def test_one_absurd_number_says_nothing_of_the_others(wrong: float, *, of_force: bool) -> None:
+    unit, speed_m_s = UnitWatch(), 0.0
+    for index in range(1600):
+        t_ns, force_m_s2 = index * 20_000_000, town(index * PERIOD_S)
+        speed_m_s += force_m_s2 * PERIOD_S
+        is_wrong = index == 500
+        told_m_s2 = wrong if is_wrong and of_force else force_m_s2
+        unit.pushes.take_force(t_ns, told_m_s2, 0.0, is_level=True)
+        if index % 5 == 0:
+            told_m_s = wrong if is_wrong and not of_force else speed_m_s
+            unit.pushes.take_velocity(t_ns, (told_m_s, 0.0, 0.0), 0.01)
+        assert unit.pushes.is_believed
