@@ -121,6 +121,7 @@ class VehicleLink:
         self._unit = UnitWatch()
         self._doubted: frozenset[str] = frozenset()  # of what the unit tells
         self._has_doubted = False  # something more of it since the last step
+        self._placed_ns: int | None = None  # when the newest sighting came whose time was one of the drone's
         self._received: list[tuple[str, list[Measurement]]] = []  # on which key, since the last step
         self._second_ns = 0  # in which samples are counted, when it began
         self._heard: Counter[str] = Counter()
@@ -146,7 +147,9 @@ class VehicleLink:
         except PayloadError as error:
             self.refuse(key.rsplit("/", 1)[-1], "unreadable", str(error))
             return
-        if key == self._keys.pad_pose and not measurements and state.history:
+        if key == self._keys.pad_pose and measurements:
+            self._placed_ns = self._clock.monotonic_ns
+        elif key == self._keys.pad_pose and state.history:
             self.refuse(*_SIGHTING_UNPLACED, _UNPLACED)
         if key == self._keys.imu:
             self._doubt_unit()
@@ -216,8 +219,15 @@ class VehicleLink:
             has_doubted_unit=has_doubted,
             is_alive=self.alive,
             pad=self.pad,
-            has_unplaced_sightings=self.refusals.has_recent(*_SIGHTING_UNPLACED, self._clock.monotonic_ns),
+            has_unplaced_sightings=self._are_sightings_unplaced(),
         )
+
+    def _are_sightings_unplaced(self) -> bool:
+        """Return whether sightings came lately and none could be placed: a link that was out has some of them lost."""
+        now_ns = self._clock.monotonic_ns
+        if self._placed_ns is not None and now_ns - self._placed_ns <= _RECENT_NS:
+            return False
+        return self.refusals.has_recent(*_SIGHTING_UNPLACED, now_ns)
 
     def _is_flooded(self, key: str) -> bool:
         """Count a sample; return whether there were more of its key within a second than any sensor makes."""

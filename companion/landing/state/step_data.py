@@ -46,7 +46,7 @@ class VehicleInputs(Struct, frozen=True, kw_only=True, eq=False):
         has_doubted_unit: something that its inertial unit tells has since then been found to be wrong.
         is_alive: its liveliness token is there; None when it never showed one.
         pad: its own description of its pad.
-        has_unplaced_sightings: lately some came that are stamped when nobody knew where the drone was.
+        has_unplaced_sightings: all that came lately are stamped when nobody knew where the drone was.
     """
 
     measurements: tuple[Measurement, ...] = ()

@@ -10,6 +10,7 @@ from companion.runtime.vehicle_link import Refusals, VehicleLink
 from link.frames.rotations import quaternion_from_yaw
 from link.messages import PadSighting, VehicleImu
 from link.payloads import cdr
+from link.records import replace
 from link.zenoh.keys import Keys
 from tests.companion.world import START_NS, own_state
 
@@ -25,22 +26,38 @@ def test_what_a_stranger_sent_reaches_no_terminal_as_it_came() -> None:
     assert refusals.recent(1) == line
 
 
+SIGHTING = PadSighting(
+    t_ns=START_NS,
+    position_flu_m=(0.3, -0.2, -2.5),
+    orientation_wxyz=(1.0, 0.0, 0.0, 0.0),
+    position_covariance_m2=(0.04, 0.01, 0.0, 0.01, 0.09, 0.0, 0.0, 0.0, 0.25),
+)
+
+
 @pytest.mark.parametrize("off_ns", [-HOUR_NS, 0, HOUR_NS])
 @pytest.mark.parametrize("is_placed", [True, False])
 def test_sighting_at_a_time_of_which_the_drones_place_is_not_known_is_refused(off_ns: int, *, is_placed: bool) -> None:
     history = (own_state(START_NS, (4.0, 5.0, 6.0)),) if is_placed else ()
-    sighting = PadSighting(
-        t_ns=START_NS + 1 + off_ns,
-        position_flu_m=(0.3, -0.2, -2.5),
-        orientation_wxyz=(1.0, 0.0, 0.0, 0.0),
-        position_covariance_m2=(0.04, 0.01, 0.0, 0.01, 0.09, 0.0, 0.0, 0.0, 0.25),
-    )
+    sighting = replace(SIGHTING, t_ns=START_NS + 1 + off_ns)
     vehicle = VehicleLink(KEYS, StepClock(50.0), None)
     vehicle.receive(KEYS.pad_pose, cdr.encode(sighting), AutopilotState(history=history))
     is_refused = is_placed and off_ns != 0
     assert vehicle.refusals.total == is_refused
     assert ("clock" in vehicle.refused_lately()) is is_refused
     assert vehicle.take(is_utc_known=True).has_unplaced_sightings is is_refused
+
+
+@pytest.mark.parametrize("first", [True, False])
+def test_sightings_are_not_unplaced_while_some_are_placed(*, first: bool) -> None:
+    vehicle, state = (
+        VehicleLink(KEYS, StepClock(50.0), None),
+        AutopilotState(history=(own_state(START_NS, (4.0, 5.0, 6.0)),)),
+    )
+    for is_placed in (first, not first):
+        off_ns = 0 if is_placed else HOUR_NS
+        vehicle.receive(KEYS.pad_pose, cdr.encode(replace(SIGHTING, t_ns=START_NS + off_ns)), state)
+    assert vehicle.refusals.total == 1
+    assert not vehicle.take(is_utc_known=True).has_unplaced_sightings
 
 
 def test_step_hears_once_that_something_of_the_inertial_unit_is_found_to_be_wrong() -> None:
