@@ -29,7 +29,7 @@ from scenarios.sortie.score import landing_from_ns, score_sortie
 from scenarios.sortie.script import SortieOperator, stations_of
 from sim_autopilot.runtime.config import DatumConfig
 
-_READY_S = 120.0  # of wall time for the autopilot's clock, receiver and truth
+_READY_S = 120.0  # of wall time for the autopilot's clock, receiver and truth, and for the companion to meet it
 # The ground is the roof, with the pad on it.
 _BODY = {"roof_height_m": 0.0, "antenna_flu_m": (0.0, 0.0, 0.0), "length_m": 400.0, "width_m": 400.0}
 # The simulations tell the place of the feet, and PX4's own height wanders by half a metre.
@@ -57,7 +57,7 @@ def fly(scenario: Scenario, options: FlyOptions, progress: Progress) -> RunOutco
         write_text(options.folder / "companion.toml", dump_toml(placed.system.companion))
         flown = (placed, options, watch, keys, zenoh)
         flight = FirmwareFlight(*flown) if operator is None else FirmwareSortie(*flown, operator=operator)
-        with ProcessGroup([_companion(options, endpoint)], options.folder) as processes:
+        with ProcessGroup([_companion(options, watch, endpoint)], options.folder) as processes:
             ended = flight.run(transport, processes, progress)
         if options.record:
             _write_truth(placed, options, keys, flight.recording)
@@ -84,11 +84,12 @@ def _sortie_result(
     return home | {"sortie": score_sortie(recording, operator, rules, ended).to_json()}
 
 
-def _companion(options: FlyOptions, endpoint: str) -> Program:
+def _companion(options: FlyOptions, watch: FirmwareWatch, endpoint: str) -> Program:
     arguments = (
         *("--config", str(options.folder / "companion.toml"), "--mavlink", options.mavlink, "-e", endpoint),
         *(() if options.sortie else ("--start",)),
-        *("--tlog", str(options.folder / "flight.tlog"), "--timeout", "0"),
+        *("--system-id", str(watch.session.target_system_id)),
+        *("--tlog", str(options.folder / "flight.tlog"), "--timeout", f"{_READY_S:g}"),
         *(("--record", str(options.folder)) if options.record else ()),
     )
     return Program(name="companion", module=MODULES["companion"], arguments=arguments)

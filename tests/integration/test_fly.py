@@ -23,28 +23,28 @@ FAST = {"ardupilot": {"WPNAV_SPEED": 1600, "WPNAV_ACCEL": 500, "PSC_JERK_XY": 10
 
 
 @contextmanager
-def stand_in(firmware: str) -> Iterator[tuple[str, str]]:
+def stand_in(firmware: str, instance: int) -> Iterator[tuple[str, str]]:
     """A simulated autopilot on the ground, and the devices of the companion and of an observer."""
     ports = free_udp_port(), free_udp_port()
     links = [word for port in ports for word in ("--mavlink", f"udpout:127.0.0.1:{port}")]
     changes = [word for name, value in FAST[firmware].items() for word in ("--set", f"parameters.{name}={value}")]
     with Programs() as programs:
-        flags = ("--firmware", firmware, "--instant", "-e", free_tcp_endpoint())
+        flags = ("--firmware", firmware, "--instance", str(instance), "--instant", "-e", free_tcp_endpoint())
         programs.start("sim-autopilot", *links, *flags, *changes)
         companion, observer = (f"udpin:127.0.0.1:{port}" for port in ports)
         yield companion, observer
 
 
-@pytest.mark.parametrize("firmware", ["ardupilot", "px4"])
+@pytest.mark.parametrize(("firmware", "instance"), [("ardupilot", 0), ("px4", 6)])
 def test_sortie_launches_from_a_pad_that_drives_off_and_lands_on_it(
-    firmware: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    firmware: str, instance: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # The firmwares' simulations measure from their feet, the stand-in from its centre of mass.
     monkeypatch.setitem(flying._RANGE_FINDER, "height_m", GEAR_HEIGHT_M)  # noqa: SLF001 (a fact of the simulator)
     monkeypatch.setattr(script, "HELD_S", 14.0)
     monkeypatch.setattr(score, "HELD_S", 14.0)
     monkeypatch.setattr(script, "_AWAY_M", 30.0)
-    with stand_in(firmware) as (companion, observer):
+    with stand_in(firmware, instance) as (companion, observer):
         options = FlyOptions(
             mavlink=companion, watch=observer, ship_speed_m_s=None, seed=1, folder=tmp_path, sortie=True
         )
