@@ -11,17 +11,8 @@ from sim_autopilot.core.places import Origin, Places, chart_at
 from sim_autopilot.core.streams import default_streams
 from sim_autopilot.flight.flight import begin
 from sim_autopilot.flight.land_detector import Landing
-from sim_autopilot.memory import (
-    AutopilotConfig,
-    AutopilotMemory,
-    Boot,
-    Course,
-    Heard,
-    MissionMemory,
-    SafetyMemory,
-    Tuning,
-    World,
-)
+from sim_autopilot.interfaces import AutopilotConfig
+from sim_autopilot.memory import AutopilotMemory, Boot, Course, Heard, MissionMemory, SafetyMemory, Tuning, World
 from sim_autopilot.plant.plant import initial_plant
 from sim_autopilot.plant.snapshot import take_snapshot
 from sim_autopilot.setpoints.guided import begin_guided

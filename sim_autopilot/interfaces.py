@@ -1,4 +1,4 @@
-"""What the step is given besides its memory: the firmware that it stands in for, and the services beside the flight.
+"""What does not change while it runs: the firmware that it stands in for, and the services beside the flight.
 
 A firmware is data in groups and a few behaviours; each has its folder in `firmware/`. The services answer what only a
 ground station asks; the core does not know which there are, and flies without any.
@@ -6,10 +6,17 @@ ground station asks; the core does not know which there are, and flies without a
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from math import pi
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Protocol, TypeAlias
+from typing import Protocol, TypeAlias
 
+import msgspec
+from msgspec import Struct
+
+from link.frames.geodesy import Datum
 from link.mavlink.dialect import Message
+from link.messages import Vector3
+from sim_autopilot.commands.requests import Answer, Request
 from sim_autopilot.core.firmware import (
     Condition,
     Identity,
@@ -19,47 +26,27 @@ from sim_autopilot.core.firmware import (
     ParameterRules,
     Results,
 )
+from sim_autopilot.core.parameters import Values
+from sim_autopilot.core.range_finder import RangeFinderModel
 from sim_autopilot.core.status_texts import EventCode, Texts
 from sim_autopilot.core.streams import Stream
+from sim_autopilot.flying_rules import MissionRules, SetpointFlight
+from sim_autopilot.memory import AutopilotMemory
+from sim_autopilot.plant.config import PlantConfig
+from sim_autopilot.plant.own_state import OwnStateModel
 
-if TYPE_CHECKING:
-    from sim_autopilot.commands.requests import Handler
-    from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, Course
-    from sim_autopilot.missions.flight import MissionStep, Progress
-    from sim_autopilot.missions.items import Item
-
-Result: TypeAlias = "tuple[AutopilotMemory, tuple[Message, ...]]"
+Result: TypeAlias = tuple[AutopilotMemory, tuple[Message, ...]]
 """The memory after something, and what is sent because of it."""
 Builder: TypeAlias = "Callable[[AutopilotMemory, AutopilotConfig], Message | None]"
 """Makes a message of now; None where there is nothing to tell."""
-Said: TypeAlias = "tuple[str, EventCode | None]"
+Handler: TypeAlias = "Callable[[AutopilotMemory, Request, AutopilotConfig], Answer]"
+"""Obeys a command."""
+Said: TypeAlias = tuple[str, EventCode | None]
 """A text, and its event where the firmware's table has none of that text."""
 
 
 DescribeFlight: TypeAlias = "Callable[[AutopilotMemory, AutopilotMemory, AutopilotMemory, AutopilotConfig], list[Said]]"
 """Tells what is said about a step by the memory before it, after its messages and at its end."""
-
-
-class SetpointFlight(Protocol):
-    """How setpoints are flown in OFFBOARD, as the mode is called here: each as it comes, or by a path of its own."""
-
-    def may_begin(self, memory: "AutopilotMemory") -> bool:
-        """Return whether the mode can be entered."""
-
-    def are_lost(self, memory: "AutopilotMemory") -> bool:
-        """Return whether the setpoints of a drone in this mode have ceased, so that the failsafe begins."""
-
-    def take_local(self, memory: "AutopilotMemory", message: Message) -> "AutopilotMemory":
-        """Return the memory after a SET_POSITION_TARGET_LOCAL_NED."""
-
-    def take_global(self, memory: "AutopilotMemory", message: Message) -> "AutopilotMemory":
-        """Return the memory after a SET_POSITION_TARGET_GLOBAL_INT."""
-
-    def take_attitude(self, memory: "AutopilotMemory", message: Message) -> "AutopilotMemory":
-        """Return the memory after a SET_ATTITUDE_TARGET."""
-
-    def steer(self, memory: "AutopilotMemory", elapsed_s: float) -> "Course | None":
-        """Return what an armed drone in this mode follows next; None where it does as in every other mode."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -78,7 +65,7 @@ class StreamRules:
     """
 
     messages: Mapping[int, Stream]
-    builders: "Mapping[int, Builder]" = field(default_factory=dict)
+    builders: Mapping[int, Builder] = field(default_factory=dict)
     groups: Mapping[int, tuple[int, ...]] = field(default_factory=dict)
     group_parameters: Mapping[int, str] = field(default_factory=dict)
     on_contact: frozenset[int] = frozenset()
@@ -98,35 +85,10 @@ class CommandRules:
         reboots: whether a command makes it reboot.
     """
 
-    handlers: "Mapping[int, Handler]"
+    handlers: Mapping[int, Handler]
     results: Results
     answers_other_components: bool
     reboots: bool
-
-
-def _says_nothing(_before: "Progress", _step: "MissionStep", _items: "tuple[Item, ...]") -> tuple[Message, ...]:
-    return ()
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class MissionRules:
-    """How it flies missions.
-
-    Attributes:
-        home_first: whether item 0 is home, whatever is uploaded there, and is not flown.
-        returns_itself: whether a return within a mission is flown by the mission's own mode.
-        holds_at_the_end: whether the hold mode follows a mission that ends in the air.
-        arms_to_start: whether MISSION_START arms.
-        describe: what is said of the items that a step of the flight finished or began.
-        flies_single_items: whether an item that belongs to no mission is flown to at once.
-    """
-
-    home_first: bool
-    returns_itself: bool
-    holds_at_the_end: bool
-    arms_to_start: bool
-    describe: "Callable[[Progress, MissionStep, tuple[Item, ...]], tuple[Message, ...]]" = _says_nothing
-    flies_single_items: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -174,7 +136,7 @@ class Services(Protocol):
         """The messages that it can send besides the firmware's, by id."""
 
     @property
-    def builders(self) -> "Mapping[int, Builder]":
+    def builders(self) -> Mapping[int, Builder]:
         """What makes these."""
 
     def begin(self) -> object:
@@ -183,13 +145,13 @@ class Services(Protocol):
     def keep(self, station: object) -> object:
         """Return what of its memory outlives a reboot."""
 
-    def handle(self, memory: "AutopilotMemory", message: Message, config: "AutopilotConfig") -> "Result | None":
+    def handle(self, memory: AutopilotMemory, message: Message, config: "AutopilotConfig") -> Result | None:
         """Return the memory after a message, and what answers it; None for one that is not the services'."""
 
-    def advance(self, memory: "AutopilotMemory", config: "AutopilotConfig") -> "Result":
+    def advance(self, memory: AutopilotMemory, config: "AutopilotConfig") -> Result:
         """Return the memory a step on, and what is sent to whoever waits for it."""
 
-    def report(self, memory: "AutopilotMemory", config: "AutopilotConfig") -> "Result":
+    def report(self, memory: AutopilotMemory, config: "AutopilotConfig") -> Result:
         """Return the memory a step on, and what is sent on the link at hand."""
 
 
@@ -197,7 +159,7 @@ class NoServices:
     """No services: nothing is handled, nothing is sent."""
 
     streams: Mapping[int, Stream] = MappingProxyType({})
-    builders: "Mapping[int, Builder]" = MappingProxyType({})
+    builders: Mapping[int, Builder] = MappingProxyType({})
 
     def begin(self) -> object:
         """Return nothing."""
@@ -207,17 +169,58 @@ class NoServices:
         """Return what there is."""
         return station
 
-    def handle(self, _memory: "AutopilotMemory", _message: Message, _config: "AutopilotConfig") -> "Result | None":
+    def handle(self, _memory: AutopilotMemory, _message: Message, _config: "AutopilotConfig") -> Result | None:
         """Leave every message to the flight."""
         return None
 
-    def advance(self, memory: "AutopilotMemory", _config: "AutopilotConfig") -> "Result":
+    def advance(self, memory: AutopilotMemory, _config: "AutopilotConfig") -> Result:
         """Send nothing."""
         return memory, ()
 
-    def report(self, memory: "AutopilotMemory", _config: "AutopilotConfig") -> "Result":
+    def report(self, memory: AutopilotMemory, _config: "AutopilotConfig") -> Result:
         """Send nothing."""
         return memory, ()
 
 
 NO_SERVICES = NoServices()
+
+
+class AutopilotConfig(Struct, frozen=True, kw_only=True):
+    """What does not change while the autopilot runs.
+
+    Attributes:
+        firmware: which one it stands in for.
+        datum: origin of W, a tangent plane, and of the autopilot's local frame at boot.
+        plant: the drone; the parameters' limits take the place of its envelope's.
+        system_id: MAVLink system.
+        instant: ready at once, without the seconds that a boot takes.
+        position_enu_m: where the drone stands at boot, its centre of mass.
+        yaw_rad: its heading there.
+        velocity_enu_m_s: with which what it stands on carries it.
+        parameters: values that differ from the firmware's defaults.
+        endurance_s: of motors running on one battery.
+        own_state: how well it knows where it is.
+        range_finder: that looks down.
+        links: of each MAVLink link the rates at which it streams, in Hz by message id; None for the firmware's own.
+        services: what answers beside the flight.
+    """
+
+    firmware: Firmware
+    datum: Datum
+    plant: PlantConfig = msgspec.field(default_factory=PlantConfig)
+    system_id: int = 1
+    instant: bool = False
+    position_enu_m: Vector3 = (0.0, 0.0, 0.12)
+    yaw_rad: float = pi / 2.0
+    velocity_enu_m_s: Vector3 = (0.0, 0.0, 0.0)
+    parameters: Values = msgspec.field(default_factory=dict)
+    endurance_s: float = 1200.0
+    own_state: OwnStateModel = msgspec.field(default_factory=OwnStateModel)
+    range_finder: RangeFinderModel = msgspec.field(default_factory=RangeFinderModel)
+    links: tuple[Mapping[int, float] | None, ...] = (None,)
+    services: Services = NO_SERVICES
+
+
+def has_passed(config: AutopilotConfig, memory: AutopilotMemory, since_boot_s: float) -> bool:
+    """Return whether so much time has passed since boot, or need not."""
+    return config.instant or memory.now.boot_ns * 1e-9 >= since_boot_s

@@ -1,11 +1,7 @@
-"""What the autopilot's step is told once, what it remembers, what comes in and what goes out."""
-
-from collections.abc import Mapping
-from math import pi
+"""What the autopilot's step remembers, what comes in and what goes out."""
 
 from msgspec import Struct, field
 
-from link.frames.geodesy import Datum
 from link.mavlink.dialect import Message
 from link.messages import Vector3
 from link.records import replace
@@ -14,7 +10,6 @@ from sim_autopilot.core.links import Later, LinkMemory, Links, Outbox, with_link
 from sim_autopilot.core.modes import Modes
 from sim_autopilot.core.parameters import Values
 from sim_autopilot.core.places import Places
-from sim_autopilot.core.range_finder import RangeFinderModel
 from sim_autopilot.core.settings import FlightSettings
 from sim_autopilot.flight.climb import Climb
 from sim_autopilot.flight.flight import ModeFlight
@@ -22,54 +17,17 @@ from sim_autopilot.flight.follow import Leader
 from sim_autopilot.flight.land_detector import Landing
 from sim_autopilot.flight.manual import Sticks
 from sim_autopilot.flight.precision_landing import Target
-from sim_autopilot.interfaces import NO_SERVICES, Firmware, Services
 from sim_autopilot.missions.fence import Fence
 from sim_autopilot.missions.flight import NO_PROGRESS, Progress
 from sim_autopilot.missions.items import Item
 from sim_autopilot.plant.config import PlantConfig
-from sim_autopilot.plant.own_state import NO_ERROR, OwnStateModel
+from sim_autopilot.plant.own_state import NO_ERROR
 from sim_autopilot.plant.plant import PlantMemory
 from sim_autopilot.plant.snapshot import Snapshot
 from sim_autopilot.safety.failsafes import NOTHING_NOTICED, Watch
 from sim_autopilot.safety.failures import NO_FAILURES, Failures
 from sim_autopilot.setpoints.guided import Guided
 from sim_autopilot.setpoints.setpoints import NO_SETPOINTS, Setpoints
-
-
-class AutopilotConfig(Struct, frozen=True, kw_only=True):
-    """What does not change while the autopilot runs.
-
-    Attributes:
-        firmware: which one it stands in for.
-        datum: origin of W, a tangent plane, and of the autopilot's local frame at boot.
-        plant: the drone; the parameters' limits take the place of its envelope's.
-        system_id: MAVLink system.
-        instant: ready at once, without the seconds that a boot takes.
-        position_enu_m: where the drone stands at boot, its centre of mass.
-        yaw_rad: its heading there.
-        velocity_enu_m_s: with which what it stands on carries it.
-        parameters: values that differ from the firmware's defaults.
-        endurance_s: of motors running on one battery.
-        own_state: how well it knows where it is.
-        range_finder: that looks down.
-        links: of each MAVLink link the rates at which it streams, in Hz by message id; None for the firmware's own.
-        services: what answers beside the flight.
-    """
-
-    firmware: Firmware
-    datum: Datum
-    plant: PlantConfig = field(default_factory=PlantConfig)
-    system_id: int = 1
-    instant: bool = False
-    position_enu_m: Vector3 = (0.0, 0.0, 0.12)
-    yaw_rad: float = pi / 2.0
-    velocity_enu_m_s: Vector3 = (0.0, 0.0, 0.0)
-    parameters: Values = field(default_factory=dict)
-    endurance_s: float = 1200.0
-    own_state: OwnStateModel = field(default_factory=OwnStateModel)
-    range_finder: RangeFinderModel = field(default_factory=RangeFinderModel)
-    links: tuple[Mapping[int, float] | None, ...] = (None,)
-    services: Services = NO_SERVICES
 
 
 class Boot(Struct, frozen=True, kw_only=True):
@@ -217,11 +175,6 @@ class AutopilotOutputs(Struct, frozen=True, kw_only=True, eq=False):
     messages: tuple[Message, ...]
     links: tuple[int | None, ...]
     state: PlantState
-
-
-def has_passed(config: AutopilotConfig, memory: AutopilotMemory, since_boot_s: float) -> bool:
-    """Return whether so much time has passed since boot, or need not."""
-    return config.instant or memory.now.boot_ns * 1e-9 >= since_boot_s
 
 
 def with_flight(memory: AutopilotMemory, flight: ModeFlight) -> AutopilotMemory:

@@ -22,8 +22,8 @@ from sim_autopilot.flight.land_detector import detect_landing
 from sim_autopilot.flight.manual import are_held
 from sim_autopilot.flight.mode_change import change_mode
 from sim_autopilot.flight.steering import over_target, steer
+from sim_autopilot.interfaces import AutopilotConfig
 from sim_autopilot.memory import (
-    AutopilotConfig,
     AutopilotInputs,
     AutopilotMemory,
     AutopilotOutputs,

@@ -9,7 +9,7 @@ import numpy as np
 from link.errors import UserError
 from link.transports.opening import open_transport
 from scenarios.identify.pilot import Flight, Pilot, Stage
-from sim_autopilot.memory import AutopilotConfig
+from sim_autopilot.interfaces import AutopilotConfig
 from sim_autopilot.runtime.build import autopilot_config
 from sim_autopilot.runtime.config import DroneConfig, SimAutopilotConfig
 from sim_autopilot.runtime.node import AutopilotNode

@@ -15,7 +15,6 @@ from sim_autopilot.commands.requests import (
     DENIED,
     UNSUPPORTED,
     Answer,
-    Handler,
     Request,
     acknowledgement,
     request_from_message,
@@ -23,7 +22,8 @@ from sim_autopilot.commands.requests import (
 from sim_autopilot.commands.stream_commands import get_interval, request_message, request_version, set_interval
 from sim_autopilot.core.links import Later
 from sim_autopilot.core.modes import Mode
-from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, with_later
+from sim_autopilot.interfaces import AutopilotConfig, Handler
+from sim_autopilot.memory import AutopilotMemory, with_later
 from sim_autopilot.missions.step import set_current
 from sim_autopilot.safety.arming import arm, arming_obstacle, disarm
 from sim_autopilot.telemetry.events import tell

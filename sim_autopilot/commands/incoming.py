@@ -7,6 +7,7 @@ from types import MappingProxyType
 from link.frames.geodesy import Datum, enu_from_geodetic
 from link.mavlink.dialect import Message, mavlink
 from link.records import replace
+from sim_autopilot.commands.addressees import is_for_us, is_ours
 from sim_autopilot.commands.commands import obey
 from sim_autopilot.commands.incoming_parameters import list_parameters, read_parameter, set_parameter
 from sim_autopilot.commands.incoming_setpoints import (
@@ -18,11 +19,11 @@ from sim_autopilot.commands.incoming_setpoints import (
 )
 from sim_autopilot.commands.mode_request import try_mode
 from sim_autopilot.commands.origin import move_origin
-from sim_autopilot.commands.requests import is_for_us, is_ours
 from sim_autopilot.commands.single_items import is_single_item, take_single_item
 from sim_autopilot.commands.stream_groups import request_data_stream
 from sim_autopilot.flight.manual import sticks_from_message
-from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, has_passed, with_link
+from sim_autopilot.interfaces import AutopilotConfig, has_passed
+from sim_autopilot.memory import AutopilotMemory, with_link
 from sim_autopilot.missions.step import mission_current, set_current
 from sim_autopilot.safety.failsafes_step import update_watch
 

@@ -6,11 +6,12 @@ Source: https://mavlink.io/en/services/parameter.html.
 from link.mavlink.dialect import Message, mavlink
 from link.records import replace
 from sim_autopilot.boot import tune
-from sim_autopilot.commands.requests import is_ours
+from sim_autopilot.commands.addressees import is_ours
 from sim_autopilot.core.links import Later
 from sim_autopilot.core.parameters import find_index, is_type_right, parameter_message, values_after_set
 from sim_autopilot.core.status_texts import status_text
-from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, with_later, with_link
+from sim_autopilot.interfaces import AutopilotConfig
+from sim_autopilot.memory import AutopilotMemory, with_later, with_link
 
 Result = tuple[AutopilotMemory, tuple[Message, ...]]
 

@@ -5,12 +5,13 @@ from math import isfinite
 from link.frames.rotations import enu_from_ned
 from link.mavlink.dialect import Message, mavlink
 from link.records import replace
-from sim_autopilot.commands.requests import is_ours
+from sim_autopilot.commands.addressees import is_ours
 from sim_autopilot.core.modes import Mode
 from sim_autopilot.flight.follow import with_word
 from sim_autopilot.flight.precision_landing import Target, place_seen, place_told, with_sighting
 from sim_autopilot.flight.repositioning import place_asked
-from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
+from sim_autopilot.interfaces import AutopilotConfig
+from sim_autopilot.memory import AutopilotMemory
 from sim_autopilot.telemetry.range_finder import height_over_surface_m
 
 Result = tuple[AutopilotMemory, tuple[Message, ...]]

@@ -1,10 +1,11 @@
 """Asking for a mode, as operators do: refused where the firmware refuses, and remembered for when the motors stop."""
 
 from link.records import replace
-from sim_autopilot.commands.requests import ACCEPTED, Answer, Handler, Request
+from sim_autopilot.commands.requests import ACCEPTED, Answer, Request
 from sim_autopilot.core.modes import ASK_FOR, Mode
 from sim_autopilot.flight.mode_change import change_mode
-from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
+from sim_autopilot.interfaces import AutopilotConfig, Handler
+from sim_autopilot.memory import AutopilotMemory
 from sim_autopilot.missions.step import begin_mission
 
 

@@ -7,7 +7,8 @@ from link.mavlink.dialect import Message
 from link.messages import Vector3
 from link.records import replace
 from sim_autopilot.core.places import local_from_world, world_from_local
-from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
+from sim_autopilot.interfaces import AutopilotConfig
+from sim_autopilot.memory import AutopilotMemory
 from sim_autopilot.telemetry.motion import gps_global_origin
 
 

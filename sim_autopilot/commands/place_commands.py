@@ -7,10 +7,11 @@ from link.mavlink.dialect import mavlink
 from link.messages import Vector3
 from link.records import replace
 from sim_autopilot.commands.mode_request import try_mode
-from sim_autopilot.commands.requests import ACCEPTED, DENIED, Answer, Handler, Request
+from sim_autopilot.commands.requests import ACCEPTED, DENIED, Answer, Request
 from sim_autopilot.core.modes import Mode
 from sim_autopilot.flight.repositioning import place_asked
-from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
+from sim_autopilot.interfaces import AutopilotConfig, Handler
+from sim_autopilot.memory import AutopilotMemory
 from sim_autopilot.telemetry.motion import home_position
 
 _CURRENT = 1

@@ -1,13 +1,11 @@
 """Commands as they travel: what COMMAND_LONG and COMMAND_INT ask for, and what an answer consists of."""
 
-from collections.abc import Callable
 from math import isfinite, nan
-from typing import TypeAlias
 
 from msgspec import Struct
 
 from link.mavlink.dialect import Message, mavlink
-from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
+from sim_autopilot.memory import AutopilotMemory
 
 ACCEPTED = int(mavlink.MAV_RESULT_ACCEPTED)
 DENIED = int(mavlink.MAV_RESULT_DENIED)
@@ -48,9 +46,6 @@ class Answer(Struct, frozen=True, kw_only=True):
     text: str | None = None
 
 
-Handler: TypeAlias = Callable[[AutopilotMemory, Request, AutopilotConfig], Answer]
-
-
 def request_from_message(message: Message) -> Request:
     """Return what a COMMAND_LONG or COMMAND_INT asks."""
     whole = message.get_type() == "COMMAND_INT"
@@ -70,23 +65,6 @@ def acknowledgement(request: Request, result: int, progress: int = 0) -> Message
     return mavlink.MAVLink_command_ack_message(
         request.command, result, progress, 0, target_system=request.system, target_component=request.component
     )
-
-
-def is_for_us(message: Message, config: AutopilotConfig) -> bool:
-    """Return whether a command concerns this autopilot; others are not answered at all."""
-    if message.target_system == 0 and config.firmware.commands.answers_other_components:
-        return True
-    if message.target_system != config.system_id:
-        return False
-    ours = (mavlink.MAV_COMP_ID_AUTOPILOT1, mavlink.MAV_COMP_ID_ALL)
-    return config.firmware.commands.answers_other_components or message.target_component in ours
-
-
-def is_ours(message: Message, config: AutopilotConfig) -> bool:
-    """Return whether a message that is no command is meant for this autopilot; 0 is everybody."""
-    components = (mavlink.MAV_COMP_ID_AUTOPILOT1, mavlink.MAV_COMP_ID_ALL)
-    concerns = config.firmware.commands.answers_other_components or message.target_component in components
-    return message.target_system in (config.system_id, 0) and concerns
 
 
 def _long_tail(message: Message) -> tuple[float, float, float]:

@@ -5,8 +5,10 @@ the height of planes: ArduCopter accepts it and flies on. Source: ArduPilot's GC
 """
 
 from link.mavlink.dialect import Message, mavlink
-from sim_autopilot.commands.requests import ACCEPTED, Request, is_ours
-from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
+from sim_autopilot.commands.addressees import is_ours
+from sim_autopilot.commands.requests import ACCEPTED, Request
+from sim_autopilot.interfaces import AutopilotConfig
+from sim_autopilot.memory import AutopilotMemory
 from sim_autopilot.missions.items import item_from_message, result_of
 
 GOES_THERE, _CHANGES_HEIGHT = 2, 3

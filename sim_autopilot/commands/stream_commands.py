@@ -4,7 +4,8 @@ from link.mavlink.dialect import mavlink
 from link.records import replace
 from sim_autopilot.commands.requests import ACCEPTED, Answer, Request
 from sim_autopilot.core.streams import Stream, with_interval
-from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, with_link
+from sim_autopilot.interfaces import AutopilotConfig
+from sim_autopilot.memory import AutopilotMemory, with_link
 from sim_autopilot.telemetry.builders import build_message, stream_of
 from sim_autopilot.telemetry.versions import PROTOCOL_VERSION
 

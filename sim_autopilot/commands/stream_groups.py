@@ -9,10 +9,10 @@ from collections.abc import Mapping
 from link.mavlink.dialect import Message, mavlink
 from link.records import replace
 from sim_autopilot.boot import tune
-from sim_autopilot.commands.requests import is_ours
+from sim_autopilot.commands.addressees import is_ours
 from sim_autopilot.core.streams import with_interval
-from sim_autopilot.interfaces import Result
-from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, with_link
+from sim_autopilot.interfaces import AutopilotConfig, Result
+from sim_autopilot.memory import AutopilotMemory, with_link
 
 _STOPS, _STARTS = 0, 1
 _ALL = int(mavlink.MAV_DATA_STREAM_ALL)

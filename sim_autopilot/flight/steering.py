@@ -13,7 +13,8 @@ from sim_autopilot.flight.manual import MANUAL_MODES, follow_sticks, sticks_in_e
 from sim_autopilot.flight.precision_landing import is_acquired, steer_to_target
 from sim_autopilot.flight.target_stages import SINKING, begin_target_landing, next_stage
 from sim_autopilot.flight.travel import Goal, move
-from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, Course
+from sim_autopilot.interfaces import AutopilotConfig
+from sim_autopilot.memory import AutopilotMemory, Course
 from sim_autopilot.setpoints.guided import on_the_ground
 
 

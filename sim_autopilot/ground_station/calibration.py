@@ -13,7 +13,8 @@ from link.records import replace
 from sim_autopilot.commands.requests import ACCEPTED, UNSUPPORTED, Answer, Request
 from sim_autopilot.core.links import Later
 from sim_autopilot.core.status_texts import status_text
-from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, with_later
+from sim_autopilot.interfaces import AutopilotConfig
+from sim_autopilot.memory import AutopilotMemory, with_later
 
 _REJECTED = int(mavlink.MAV_RESULT_TEMPORARILY_REJECTED)
 _FAILED = int(mavlink.MAV_RESULT_FAILED)

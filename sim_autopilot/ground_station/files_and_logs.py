@@ -14,7 +14,8 @@ from sim_autopilot.core.status_texts import status_text
 from sim_autopilot.ground_station.logs.flight_log import LogRules, Row
 from sim_autopilot.ground_station.logs.logs import Logs, add_row, begin_download, entries, is_due, pieces, shown_logs
 from sim_autopilot.ground_station.memory import station_of, with_station
-from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
+from sim_autopilot.interfaces import AutopilotConfig
+from sim_autopilot.memory import AutopilotMemory
 from sim_autopilot.telemetry.motion import attitude, global_position_int, local_position_ned
 
 Result = tuple[AutopilotMemory, tuple[Message, ...]]

@@ -9,7 +9,8 @@ from link.records import replace
 from sim_autopilot.commands.requests import ACCEPTED, DENIED, Answer, Request, acknowledgement
 from sim_autopilot.core.links import Later
 from sim_autopilot.ground_station.memory import Gripper, station_of, with_station
-from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
+from sim_autopilot.interfaces import AutopilotConfig
+from sim_autopilot.memory import AutopilotMemory
 
 _REJECTED = int(mavlink.MAV_RESULT_TEMPORARILY_REJECTED)
 _IN_PROGRESS = int(mavlink.MAV_RESULT_IN_PROGRESS)

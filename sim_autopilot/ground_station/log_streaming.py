@@ -2,7 +2,7 @@
 
 from link.mavlink.dialect import Message, mavlink
 from link.records import replace
-from sim_autopilot.commands.requests import ACCEPTED, UNSUPPORTED, Answer, Handler, Request, acknowledgement
+from sim_autopilot.commands.requests import ACCEPTED, UNSUPPORTED, Answer, Request, acknowledgement
 from sim_autopilot.ground_station.files_and_logs import log_row
 from sim_autopilot.ground_station.logs.flight_log import LogRules
 from sim_autopilot.ground_station.logs.log_stream import (
@@ -14,7 +14,8 @@ from sim_autopilot.ground_station.logs.log_stream import (
     with_row,
 )
 from sim_autopilot.ground_station.memory import station_of, with_station
-from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
+from sim_autopilot.interfaces import AutopilotConfig, Handler
+from sim_autopilot.memory import AutopilotMemory
 
 _REJECTED = int(mavlink.MAV_RESULT_TEMPORARILY_REJECTED)
 _IN_PROGRESS = int(mavlink.MAV_RESULT_IN_PROGRESS)

@@ -7,12 +7,13 @@ from math import isfinite
 
 from link.mavlink.dialect import Message, mavlink
 from link.records import replace
+from sim_autopilot.commands.addressees import is_ours
 from sim_autopilot.commands.incoming_parameters import banner
-from sim_autopilot.commands.requests import ACCEPTED, DENIED, UNSUPPORTED, Answer, Request, is_ours
+from sim_autopilot.commands.requests import ACCEPTED, DENIED, UNSUPPORTED, Answer, Request
 from sim_autopilot.core.links import Later
 from sim_autopilot.core.status_texts import status_text
-from sim_autopilot.interfaces import Result
-from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
+from sim_autopilot.interfaces import AutopilotConfig, Result
+from sim_autopilot.memory import AutopilotMemory
 from sim_autopilot.telemetry.versions import autopilot_version
 
 _FAILED = int(mavlink.MAV_RESULT_FAILED)

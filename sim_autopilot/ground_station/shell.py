@@ -11,7 +11,8 @@ from link.records import replace
 from sim_autopilot.commands.incoming_parameters import with_value
 from sim_autopilot.core.parameters import find_index, is_allowed
 from sim_autopilot.ground_station.memory import station_of, with_station
-from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
+from sim_autopilot.interfaces import AutopilotConfig
+from sim_autopilot.memory import AutopilotMemory
 
 _PIECE, _LINE_MAX = 70, 1024
 _PROMPT = "pxh> "

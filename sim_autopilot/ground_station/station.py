@@ -7,8 +7,9 @@ from types import MappingProxyType
 from link.ftp.state import FtpRules
 from link.ftp.store import Shown
 from link.mavlink.dialect import Message, mavlink
+from sim_autopilot.commands.addressees import is_for_us, is_ours
 from sim_autopilot.commands.commands import answer_command
-from sim_autopilot.commands.requests import Answer, Request, acknowledgement, is_for_us, is_ours, request_from_message
+from sim_autopilot.commands.requests import Answer, Request, acknowledgement, request_from_message
 from sim_autopilot.core.parameters import Parameter, Values
 from sim_autopilot.core.streams import Stream
 from sim_autopilot.ground_station.files_and_logs import (
@@ -25,8 +26,8 @@ from sim_autopilot.ground_station.memory import EMPTY, StationMemory, keep_store
 from sim_autopilot.ground_station.missions.plans import pass_transfer, take_plan
 from sim_autopilot.ground_station.missions.rules import TransferRules
 from sim_autopilot.ground_station.missions.transfer import MESSAGE_IDS
-from sim_autopilot.interfaces import Builder, Result
-from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
+from sim_autopilot.interfaces import AutopilotConfig, Builder, Result
+from sim_autopilot.memory import AutopilotMemory
 
 _COMMANDS = frozenset({mavlink.MAVLINK_MSG_ID_COMMAND_LONG, mavlink.MAVLINK_MSG_ID_COMMAND_INT})
 

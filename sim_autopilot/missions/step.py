@@ -4,7 +4,8 @@ from link.mavlink.dialect import Message, mavlink
 from link.records import replace
 from sim_autopilot.core.modes import Event, Mode
 from sim_autopilot.flight.mode_change import change_mode
-from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, with_flight
+from sim_autopilot.interfaces import AutopilotConfig
+from sim_autopilot.memory import AutopilotMemory, with_flight
 from sim_autopilot.missions.flight import Progress, Stage, Surroundings, fly_mission, resume, set_to
 
 _NO_ITEMS = 65535

@@ -14,8 +14,7 @@ from sim_autopilot.firmware.ardupilot.ardupilot import ARDUPILOT
 from sim_autopilot.firmware.px4.px4 import PX4
 from sim_autopilot.ground_station.ardupilot import ARDUPILOT_STATION
 from sim_autopilot.ground_station.px4.station import PX4_STATION
-from sim_autopilot.interfaces import NO_SERVICES, Firmware, Services
-from sim_autopilot.memory import AutopilotConfig
+from sim_autopilot.interfaces import NO_SERVICES, AutopilotConfig, Firmware, Services
 from sim_autopilot.physics.contact import GEAR_HEIGHT_M
 from sim_autopilot.plant.config import PlantConfig
 from sim_autopilot.plant.own_state import OwnStateModel

@@ -17,7 +17,8 @@ from sim_autopilot.commands.origin import move_origin
 from sim_autopilot.core.data import Array, Deck, PlantState
 from sim_autopilot.core.range_finder import RangeErrors
 from sim_autopilot.core.streams import shortest_interval_ns
-from sim_autopilot.memory import AutopilotConfig, AutopilotInputs, AutopilotMemory
+from sim_autopilot.interfaces import AutopilotConfig
+from sim_autopilot.memory import AutopilotInputs, AutopilotMemory
 from sim_autopilot.plant.own_state import NO_ERROR, OwnStateError
 from sim_autopilot.runtime.routing import Routes, target_of
 from sim_autopilot.step import autopilot_step

@@ -12,7 +12,7 @@ import structlog
 from link.transports.opening import open_transport
 from link.zenoh.keys import Keys
 from link.zenoh.session import ZenohOptions, open_session
-from sim_autopilot.memory import AutopilotConfig
+from sim_autopilot.interfaces import AutopilotConfig
 from sim_autopilot.runtime.config import SimAutopilotConfig
 from sim_autopilot.runtime.loop import Links, WireLoop
 from sim_autopilot.runtime.node import STEP_NS, AutopilotNode

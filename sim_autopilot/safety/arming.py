@@ -5,7 +5,8 @@ from sim_autopilot.core.modes import Mode, rest
 from sim_autopilot.flight.flight import Leg, begin, climb_to
 from sim_autopilot.flight.land_detector import Landing
 from sim_autopilot.flight.manual import MANUAL_MODES, sticks_in_effect
-from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, has_passed
+from sim_autopilot.interfaces import AutopilotConfig, has_passed
+from sim_autopilot.memory import AutopilotMemory
 from sim_autopilot.missions.flight import Stage
 
 _LANDING_MODES = frozenset({Mode.LAND, Mode.PRECISION_LAND, Mode.RTL, Mode.SMART_RTL})

@@ -4,7 +4,8 @@ from link.records import replace
 from sim_autopilot.core.modes import Event
 from sim_autopilot.flight.manual import MANUAL_MODES
 from sim_autopilot.flight.mode_change import change_mode
-from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
+from sim_autopilot.interfaces import AutopilotConfig
+from sim_autopilot.memory import AutopilotMemory
 from sim_autopilot.safety.arming import disarm
 from sim_autopilot.safety.failsafes import Watch, watch_battery, watch_fence, watch_station
 

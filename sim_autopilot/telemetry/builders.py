@@ -5,8 +5,8 @@ from types import MappingProxyType
 
 from link.mavlink.dialect import Message, mavlink
 from sim_autopilot.core.streams import Stream
-from sim_autopilot.interfaces import Builder
-from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, has_passed
+from sim_autopilot.interfaces import AutopilotConfig, Builder, has_passed
+from sim_autopilot.memory import AutopilotMemory
 from sim_autopilot.missions.step import mission_current
 from sim_autopilot.telemetry import high_latency, motion, range_finder, sensors, status, versions
 

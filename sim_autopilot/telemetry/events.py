@@ -9,7 +9,8 @@ from dataclasses import dataclass
 from link.mavlink.dialect import Message, event_id, mavlink
 from link.records import replace
 from sim_autopilot.core.status_texts import EventCode, FailsafeTexts, status_text, status_texts
-from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
+from sim_autopilot.interfaces import AutopilotConfig
+from sim_autopilot.memory import AutopilotMemory
 from sim_autopilot.telemetry.motion import gps_global_origin, home_position
 from sim_autopilot.telemetry.status import boot_ms
 

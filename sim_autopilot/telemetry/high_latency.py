@@ -5,7 +5,8 @@ from math import atan2, degrees, hypot
 from link.frames.rotations import yaw_ned_from_enu
 from link.mavlink.dialect import Message, mavlink
 from sim_autopilot.core.places import geodetic
-from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
+from sim_autopilot.interfaces import AutopilotConfig
+from sim_autopilot.memory import AutopilotMemory
 from sim_autopilot.safety.failsafes_step import charge_of
 from sim_autopilot.telemetry.motion import vfr_hud, wire_place
 from sim_autopilot.telemetry.status import boot_ms, heartbeat

@@ -13,7 +13,8 @@ from link.frames.rotations import (
 from link.mavlink.dialect import Message, mavlink
 from link.messages import Vector3
 from sim_autopilot.core.places import geodetic, local_from_world
-from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
+from sim_autopilot.interfaces import AutopilotConfig
+from sim_autopilot.memory import AutopilotMemory
 from sim_autopilot.plant.snapshot import Snapshot
 from sim_autopilot.telemetry.status import boot_ms
 

@@ -5,7 +5,8 @@ from math import inf
 from link.frames.rotations import conjugate, rotate
 from link.mavlink.dialect import Message, mavlink
 from link.messages import Vector3
-from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
+from sim_autopilot.interfaces import AutopilotConfig
+from sim_autopilot.memory import AutopilotMemory
 from sim_autopilot.physics.ground import ground_height
 from sim_autopilot.telemetry.status import boot_ms
 

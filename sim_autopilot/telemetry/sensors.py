@@ -9,7 +9,8 @@ from link.frames.rotations import frd_from_flu, quaternion_ned_frd_from_enu_flu
 from link.mavlink.dialect import Message, mavlink
 from sim_autopilot.core.places import geodetic
 from sim_autopilot.flight.manual import sticks_in_effect
-from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
+from sim_autopilot.interfaces import AutopilotConfig
+from sim_autopilot.memory import AutopilotMemory
 from sim_autopilot.plant.snapshot import Snapshot, take_snapshot
 from sim_autopilot.telemetry.range_finder import height_over_surface_m
 from sim_autopilot.telemetry.status import boot_ms

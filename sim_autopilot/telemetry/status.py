@@ -6,7 +6,8 @@ from link.frames.geodesy import geodetic_from_enu
 from link.mavlink.dialect import Message, mavlink
 from sim_autopilot.core.modes import Mode
 from sim_autopilot.flight.target_stages import SINKING
-from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, has_passed
+from sim_autopilot.interfaces import AutopilotConfig, has_passed
+from sim_autopilot.memory import AutopilotMemory
 from sim_autopilot.safety.failsafes_step import charge_of
 from sim_autopilot.setpoints.guided import is_rising
 

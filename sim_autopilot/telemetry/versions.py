@@ -1,7 +1,8 @@
 """Messages about what the autopilot is: its version and its protocol, and since when it flies."""
 
 from link.mavlink.dialect import Message, mavlink
-from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
+from sim_autopilot.interfaces import AutopilotConfig
+from sim_autopilot.memory import AutopilotMemory
 from sim_autopilot.telemetry.status import boot_ms
 
 PROTOCOL_VERSION = 300

@@ -5,7 +5,7 @@ from collections import Counter
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import Message, mavlink
 from link.records import replace
-from sim_autopilot.memory import AutopilotConfig
+from sim_autopilot.interfaces import AutopilotConfig
 from sim_autopilot.runtime.node import AutopilotNode
 from tests.sim_autopilot.pilot import START_NS, STILL_AIR
 

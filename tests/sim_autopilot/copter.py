@@ -3,7 +3,7 @@
 from link.mavlink.dialect import Message, mavlink
 from sim_autopilot.firmware.ardupilot.ardupilot import ARDUPILOT
 from sim_autopilot.ground_station.ardupilot import ARDUPILOT_STATION
-from sim_autopilot.memory import AutopilotConfig
+from sim_autopilot.interfaces import AutopilotConfig
 from tests.sim_autopilot.pilot import DATUM, Pilot, arm, command
 
 STABILIZE, ALT_HOLD, AUTO, GUIDED, LOITER, RTL, LAND = 0, 2, 3, 4, 5, 6, 9

@@ -11,7 +11,7 @@ from link.mavlink.dialect import Message, mavlink
 from sim_autopilot.core.data import Array, Deck
 from sim_autopilot.firmware.px4.px4 import PX4
 from sim_autopilot.ground_station.px4.station import PX4_STATION
-from sim_autopilot.memory import AutopilotConfig
+from sim_autopilot.interfaces import AutopilotConfig
 from sim_autopilot.runtime.node import AutopilotNode
 
 START_NS = 1_795_000_000_000_000_000

@@ -7,7 +7,7 @@ import pytest
 
 from link.mavlink.dialect import Message, mavlink
 from sim_autopilot.core.places import local_from_world
-from sim_autopilot.memory import AutopilotConfig
+from sim_autopilot.interfaces import AutopilotConfig
 from sim_autopilot.physics.airframe import ARDUCOPTER_AIRFRAME
 from sim_autopilot.plant.config import PlantConfig
 from tests.sim_autopilot.copter import (

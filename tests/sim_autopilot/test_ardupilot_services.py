@@ -10,7 +10,7 @@ from sim_autopilot.core.parameters import default_values
 from sim_autopilot.core.settings import FailsafeSettings
 from sim_autopilot.firmware.ardupilot.ardupilot import ARDUPILOT
 from sim_autopilot.firmware.ardupilot.failsafes import failsafe_settings
-from sim_autopilot.memory import AutopilotConfig
+from sim_autopilot.interfaces import AutopilotConfig
 from sim_autopilot.safety.failsafes import NOTHING_NOTICED, Watch, watch_battery, watch_fence, watch_station
 from tests.sim_autopilot.copter import ALT_HOLD, GUIDED, LOITER, RTL, ardupilot, copter_in_the_air, mode
 from tests.sim_autopilot.pilot import Pilot, arm

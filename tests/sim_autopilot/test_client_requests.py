@@ -5,7 +5,7 @@ from math import nan
 import pytest
 
 from link.mavlink.dialect import Message, mavlink
-from sim_autopilot.memory import AutopilotConfig
+from sim_autopilot.interfaces import AutopilotConfig
 from tests.sim_autopilot.clients import Clients, beat
 from tests.sim_autopilot.copter import ardupilot, copter_in_the_air
 from tests.sim_autopilot.pilot import DATUM, TAKEOFF, Pilot, arm, command, px4

@@ -5,7 +5,7 @@ from math import nan
 import pytest
 
 from link.mavlink.dialect import Message, mavlink
-from sim_autopilot.memory import AutopilotConfig
+from sim_autopilot.interfaces import AutopilotConfig
 from tests.sim_autopilot.copter import GUIDED, ardupilot, mode
 from tests.sim_autopilot.pilot import Pilot, arm, command, px4
 from tests.sim_autopilot.planner import download, item, plan_messages, upload

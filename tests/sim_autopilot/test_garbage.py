@@ -11,7 +11,7 @@ from link.mavlink.codec import MavlinkCodec
 from link.mavlink.contents import field_offsets, with_checksum
 from link.mavlink.dialect import Message, mavlink
 from sim_autopilot.commands.incoming import HANDLED
-from sim_autopilot.memory import AutopilotConfig
+from sim_autopilot.interfaces import AutopilotConfig
 from sim_autopilot.runtime.node import AutopilotNode
 from tests.sim_autopilot.copter import ardupilot
 from tests.sim_autopilot.pilot import OFFBOARD, START_NS, STILL_AIR, Pilot, arm, px4, setpoint

@@ -35,7 +35,8 @@ from sim_autopilot.firmware.ardupilot.streams import (
     STREAMS,
 )
 from sim_autopilot.firmware.parameter_table import whole_list
-from sim_autopilot.interfaces import CommandRules, Firmware, MissionRules, StreamRules
+from sim_autopilot.flying_rules import MissionRules
+from sim_autopilot.interfaces import CommandRules, Firmware, StreamRules
 
 
 def _info(text: str) -> Text:

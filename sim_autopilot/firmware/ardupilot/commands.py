@@ -13,10 +13,11 @@ from link.messages import Vector3
 from sim_autopilot.commands.commands import HANDLERS
 from sim_autopilot.commands.incoming_parameters import with_value
 from sim_autopilot.commands.place_commands import go_there
-from sim_autopilot.commands.requests import ACCEPTED, DENIED, Answer, Handler, Request
+from sim_autopilot.commands.requests import ACCEPTED, DENIED, Answer, Request
 from sim_autopilot.core.modes import Mode
 from sim_autopilot.flight.repositioning import with_speed
-from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, with_guided
+from sim_autopilot.interfaces import AutopilotConfig, Handler
+from sim_autopilot.memory import AutopilotMemory, with_guided
 from sim_autopilot.missions.step import mission_current, set_current
 from sim_autopilot.setpoints.guided import (
     with_destination,

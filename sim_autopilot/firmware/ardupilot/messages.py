@@ -9,7 +9,8 @@ from link.frames.rotations import frd_from_flu, ned_from_enu, yaw_ned_from_enu
 from link.mavlink.dialect import Message, mavlink
 from sim_autopilot.core.modes import Mode
 from sim_autopilot.core.places import geodetic, local_from_world
-from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, has_passed
+from sim_autopilot.interfaces import AutopilotConfig, has_passed
+from sim_autopilot.memory import AutopilotMemory
 from sim_autopilot.setpoints.guided_setpoint import Task
 from sim_autopilot.telemetry.motion import attitude, wire_place
 from sim_autopilot.telemetry.sensors import scaled_imu, scaled_pressure, truth

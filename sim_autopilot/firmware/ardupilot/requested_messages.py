@@ -12,8 +12,8 @@ from link.mavlink.dialect import Message, mavlink
 from sim_autopilot.core.places import geodetic
 from sim_autopilot.firmware.ardupilot import messages
 from sim_autopilot.firmware.ardupilot.messages import simstate
-from sim_autopilot.interfaces import Builder
-from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
+from sim_autopilot.interfaces import AutopilotConfig, Builder
+from sim_autopilot.memory import AutopilotMemory
 from sim_autopilot.safety.failsafes_step import charge_of
 from sim_autopilot.telemetry.motion import wire_place
 from sim_autopilot.telemetry.sensors import truth

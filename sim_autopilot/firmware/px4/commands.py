@@ -10,13 +10,14 @@ from link.records import replace
 from sim_autopilot.commands.commands import HANDLERS
 from sim_autopilot.commands.mode_request import try_mode
 from sim_autopilot.commands.place_commands import go_there
-from sim_autopilot.commands.requests import ACCEPTED, DENIED, UNSUPPORTED, Answer, Handler, Request
+from sim_autopilot.commands.requests import ACCEPTED, DENIED, UNSUPPORTED, Answer, Request
 from sim_autopilot.commands.stream_commands import request_flight, request_protocol
 from sim_autopilot.core.modes import Mode
 from sim_autopilot.flight.flight import climb_to
 from sim_autopilot.flight.orbit import Facing, begin_orbit
 from sim_autopilot.flight.repositioning import place_asked, reposition, with_speed
-from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, with_flight
+from sim_autopilot.interfaces import AutopilotConfig, Handler
+from sim_autopilot.memory import AutopilotMemory, with_flight
 from sim_autopilot.safety.failures import inject, is_refused
 
 

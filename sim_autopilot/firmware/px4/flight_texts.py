@@ -29,8 +29,8 @@ from sim_autopilot.firmware.px4.events import (
     TAKEN_OFF,
 )
 from sim_autopilot.flight.flight import Leg
-from sim_autopilot.interfaces import Said
-from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
+from sim_autopilot.interfaces import AutopilotConfig, Said
+from sim_autopilot.memory import AutopilotMemory
 from sim_autopilot.missions.flight import Stage
 
 LOG_PATH = "log/{0:%Y-%m-%d}/{0:%H_%M_%S}.ulg"

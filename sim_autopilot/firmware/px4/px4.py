@@ -42,7 +42,8 @@ from sim_autopilot.firmware.px4.modes import MODES
 from sim_autopilot.firmware.px4.offboard import Offboard
 from sim_autopilot.firmware.px4.parameters import OBEYED, flight_settings
 from sim_autopilot.firmware.px4.streams import LINKS, SILENT_MESSAGES, STREAMS
-from sim_autopilot.interfaces import CommandRules, Firmware, MissionRules, StreamRules
+from sim_autopilot.flying_rules import MissionRules
+from sim_autopilot.interfaces import CommandRules, Firmware, StreamRules
 from sim_autopilot.telemetry.status import orbit_execution_status
 
 _ARMING_S = 3.5

@@ -10,7 +10,8 @@ from sim_autopilot.ground_station.memory import station_of, with_station
 from sim_autopilot.ground_station.missions.library import Arrival
 from sim_autopilot.ground_station.missions.rules import TransferRules
 from sim_autopilot.ground_station.missions.transfer import take_mission_message, transfer_passes
-from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
+from sim_autopilot.interfaces import AutopilotConfig
+from sim_autopilot.memory import AutopilotMemory
 from sim_autopilot.missions.fence import fence_of
 from sim_autopilot.missions.flight import NO_PROGRESS
 from sim_autopilot.missions.items import FENCE, MISSION, Item

@@ -19,7 +19,8 @@ from sim_autopilot.ground_station.px4.health_bits import (
     MODE_STATES,
     PROTOCOL,
 )
-from sim_autopilot.memory import AutopilotConfig, AutopilotMemory, has_passed
+from sim_autopilot.interfaces import AutopilotConfig, has_passed
+from sim_autopilot.memory import AutopilotMemory
 from sim_autopilot.safety.arming import arming_obstacle
 from sim_autopilot.telemetry.events import tell
 

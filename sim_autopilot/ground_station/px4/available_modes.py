@@ -6,7 +6,8 @@ Source: PX4, its names and numbers in the order of its navigation states; modes 
 from link.mavlink.dialect import Message, mavlink
 from sim_autopilot.commands.requests import ACCEPTED, Answer, Request
 from sim_autopilot.core.modes import Mode
-from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
+from sim_autopilot.interfaces import AutopilotConfig
+from sim_autopilot.memory import AutopilotMemory
 
 _NO_STANDARD = int(mavlink.MAV_STANDARD_MODE_NON_STANDARD)
 _MODES: tuple[tuple[Mode, int, str], ...] = (

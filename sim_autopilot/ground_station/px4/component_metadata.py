@@ -17,7 +17,8 @@ from sim_autopilot.core.parameters import Parameter, Values
 from sim_autopilot.firmware.px4.modes import MODES
 from sim_autopilot.firmware.px4.parameters import OBEYED
 from sim_autopilot.ground_station.px4.event_metadata import EVENTS_PATH, events_description
-from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
+from sim_autopilot.interfaces import AutopilotConfig
+from sim_autopilot.memory import AutopilotMemory
 from sim_autopilot.telemetry.status import boot_ms
 
 ACTUATORS_PATH = "etc/extras/actuators.json.xz"

@@ -8,7 +8,8 @@ from link.records import replace
 from sim_autopilot.boot import tune
 from sim_autopilot.commands.requests import ACCEPTED, DENIED, UNSUPPORTED, Answer, Request
 from sim_autopilot.core.parameters import default_values
-from sim_autopilot.memory import AutopilotConfig, AutopilotMemory
+from sim_autopilot.interfaces import AutopilotConfig
+from sim_autopilot.memory import AutopilotMemory
 
 _REJECTED = int(mavlink.MAV_RESULT_TEMPORARILY_REJECTED)
 _ALLOWS_TESTS = "COM_MOT_TEST_EN"

@@ -14,7 +14,7 @@ from link.messages import Vector3
 from sim_autopilot.core.places import Origin, local_from_world, world_from_local
 from sim_autopilot.firmware.ardupilot.ardupilot import ARDUPILOT
 from sim_autopilot.firmware.px4.px4 import PX4
-from sim_autopilot.memory import AutopilotConfig
+from sim_autopilot.interfaces import AutopilotConfig
 from tests.sim_autopilot.copter import ardupilot
 from tests.sim_autopilot.pilot import DATUM, Pilot, arm, px4, set_mode, setpoint
 

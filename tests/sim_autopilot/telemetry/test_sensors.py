@@ -6,7 +6,7 @@ import pytest
 from link.frames.geodesy import enu_from_geodetic
 from link.mavlink.dialect import Message, mavlink
 from link.records import replace
-from sim_autopilot.memory import AutopilotConfig
+from sim_autopilot.interfaces import AutopilotConfig
 from sim_autopilot.plant.own_state import OwnStateModel
 from sim_autopilot.telemetry.sensors import hil_state_quaternion, pressure_hpa
 from tests.sim_autopilot.copter import ardupilot
