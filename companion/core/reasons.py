@@ -166,7 +166,7 @@ class Reason(Enum):
     NO_OWN_POSITION = "the autopilot reports no local position yet"
     NO_OWN_ATTITUDE = "the autopilot's attitude is too old"
     IN_FAILSAFE = "the autopilot is in a failsafe: the pilot has to change its mode first"
-    RIDES_ALONG = "the drone stands on the vehicle, which drives at {:.1f} m/s: command launch, or stop it first"
+    RIDES_ALONG = "the drone stands on the vehicle, which drives at {:.1f} m/s: stop it, or launch with the motors off"
     NOT_ON_DECK = "the drone does not stand on the vehicle's pad: command start"
     STATION_TOO_FAR = "station is {:.6g} m from the pad, sortie.offset_max_m is {:g}: raise it or give a nearer one"
     STATION_IN_VEHICLE = (

@@ -4,7 +4,7 @@ from companion.autopilots.driver import AutopilotCommand, Desire
 from companion.autopilots.messages import is_arming
 from companion.config.companion import CompanionConfig
 from companion.core.reasons import Reason
-from companion.landing.decisions.conditions import HELD_UP, holds
+from companion.landing.decisions.conditions import HELD_UP, holds, is_low_above_pad
 from companion.landing.decisions.contact import may_force_motors_off
 from companion.landing.decisions.contact_signs import signs_of
 from companion.landing.sortie.events import is_quiet_for_long
@@ -14,6 +14,7 @@ from companion.situation.phases import Phase
 from companion.situation.situation import Situation
 from link.records import replace
 
+_NEAR_PAD = frozenset({Phase.DESCEND, Phase.ABORT})
 _DISARM_MAX_S = 1.0  # it takes 0.6 s where the plain one is refused; the companion waits for longer before it ends
 
 
@@ -26,7 +27,7 @@ def drive(
     driver_memory = memory.control.driver
     for command, result in inputs.acknowledgements:
         driver_memory = inputs.driver.acknowledged(driver_memory, command, result)
-    hands_over = inputs.leaving and not _finishes_disarm(memory, situation)
+    hands_over = inputs.leaving and not _must_finish(memory, situation, config)
     desire = _last_desire(memory, situation) if hands_over else _desire(memory, situation, config)
     driver_memory, commands = inputs.driver.act(driver_memory, inputs.autopilot, desire, inputs.monotonic_ns)
     if driver_memory is not memory.control.driver:
@@ -34,9 +35,15 @@ def drive(
     return memory, commands
 
 
-def _finishes_disarm(memory: StepMemory, situation: Situation) -> bool:
-    """Return whether the motors are being switched off: an autopilot that hovers by itself would leave the pad."""
-    return memory.progress.phase is Phase.TOUCHDOWN and _in_phase_s(memory, situation) < _DISARM_MAX_S
+def _must_finish(memory: StepMemory, situation: Situation, config: CompanionConfig) -> bool:
+    """Return whether the companion flies on although it is to end: what it does now is soon over.
+
+    An autopilot that hovers by itself would leave the pad on which the motors are being switched off. Low above the pad
+    it would sink onto it as it brakes, and the pad that drives on would throw the drone off.
+    """
+    if memory.progress.phase is Phase.TOUCHDOWN:
+        return _in_phase_s(memory, situation) < _DISARM_MAX_S
+    return memory.progress.phase in _NEAR_PAD and is_low_above_pad(situation, config)
 
 
 def _last_desire(memory: StepMemory, situation: Situation) -> Desire:

@@ -7,6 +7,7 @@ from companion.config.companion import CompanionConfig
 from companion.core.reasons import Cause, Reason, same_or_new
 from companion.landing.commands import answer
 from companion.landing.decisions.aborts import ABORTS
+from companion.landing.decisions.conditions import is_above_commitment, is_low_above_pad
 from companion.landing.decisions.entries import update_held
 from companion.landing.decisions.events import decide
 from companion.landing.decisions.feasibility import OBSTACLES, obstacle
@@ -63,9 +64,8 @@ def take_events(
             stays = memory.progress.phase is Phase.HOLD and not may_retry
             cause = _COMMANDED[inputs.command] if stays else memory.progress.cause
             memory = replace(memory, progress=replace(memory.progress, may_retry=may_retry, cause=cause))
-    if inputs.leaving and is_carried_by_deck(memory.progress.phase, situation, config):
-        # An autopilot that hovers by itself would hold its place in the world against the deck that drives on.
-        memory = _enter(memory, Event.CALLED_OFF, _COMMANDED[Command.ABORT], situation, config)
+    if inputs.leaving:
+        memory = _leave(memory, situation, config)
     progress = update_wait(memory, situation, config)
     held = update_held(progress.held, progress.phase, situation, config, others=_BESIDE_LANDINGS)
     known = same_or_new(progress.obstacle, obstacle(held, situation, config))
@@ -78,6 +78,21 @@ def take_events(
         decision = stay_out(memory.sortie, memory.progress, decision)
         memory = _enter(memory, *decision, situation, config)
     return _update_control(_learn_of_restart(memory, inputs), inputs), reply
+
+
+def _leave(memory: StepMemory, situation: Situation, config: CompanionConfig) -> StepMemory:
+    """Return the memory of a companion that is to end; an autopilot that hovers by itself holds its place in the world.
+
+    On the deck that would be against the deck, which drives on. A drone that is low above a pad and not committed to it
+    climbs first.
+    """
+    phase = memory.progress.phase
+    is_low = is_low_above_pad(situation, config) and is_above_commitment(situation, config)
+    if phase is Phase.DESCEND and is_low:
+        return _enter(memory, Event.ABORT, _COMMANDED[Command.ABORT], situation, config)
+    if is_carried_by_deck(phase, situation, config):
+        return _enter(memory, Event.CALLED_OFF, _COMMANDED[Command.ABORT], situation, config)
+    return memory
 
 
 def _learn_of_restart(memory: StepMemory, inputs: StepInputs) -> StepMemory:
@@ -162,10 +177,8 @@ def _progress_after(
 
 def _escape(model: ModelMemory, situation: Situation, config: CompanionConfig) -> ModelMemory:
     """Let the virtual model sink no further towards a roof that is near: no plan of limited jerk turns it in time."""
-    reference, pad, limits, relative = model.reference, situation.pad, situation.limits, situation.approach
-    if reference is None or pad is None or limits is None or relative is None:
-        return model
-    if relative.height_m > config.descent.wait.height_m:
+    reference, pad, limits = model.reference, situation.pad, situation.limits
+    if reference is None or pad is None or limits is None or not is_low_above_pad(situation, config):
         return model
     velocity, acceleration = reference.velocity_enu_m_s.copy(), reference.acceleration_enu_m_s2.copy()
     velocity[2] = max(velocity[2], pad.velocity_enu_m_s[0, 2])

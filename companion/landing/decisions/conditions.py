@@ -75,6 +75,11 @@ def is_above_commitment(s: Situation, c: CompanionConfig) -> bool:
     return s.approach is not None and s.approach.height_m > c.descent.commit_height_m
 
 
+def is_low_above_pad(s: Situation, c: CompanionConfig) -> bool:
+    """Return whether the drone is no higher above the pad than where it waits."""
+    return s.approach is not None and s.approach.height_m <= c.descent.wait.height_m
+
+
 def is_heading_to_be_shown(s: Situation, c: CompanionConfig) -> bool:
     """Return whether nothing but a heading that has become vague is missed, which a vehicle shows while it drives."""
     if s.pad is None or s.pad.yaw_rad is None or s.pad.unplaced != HEADING_UNKNOWN:

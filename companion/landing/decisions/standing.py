@@ -7,6 +7,7 @@ flight, where the lean that holds against the air shows how hard that is: at 45 
 from companion.config.companion import CompanionConfig
 from companion.core.data import GRAVITY_M_S2
 from companion.core.reasons import Cause, Reason
+from companion.landing.decisions.conditions import is_low_above_pad
 from companion.landing.decisions.contact_trial import is_in_contact
 from companion.situation.situation import Situation
 
@@ -28,7 +29,7 @@ def would_blow_off(s: Situation, c: CompanionConfig) -> bool:
 
     Higher than where it waits, it may still catch up with the vehicle, and the wind is stronger.
     """
-    if s.approach is None or s.approach.height_m > c.descent.wait.height_m:
+    if not is_low_above_pad(s, c):
         return False
     return s.following.pushed_m_s2 > c.touchdown.gear_friction * GRAVITY_M_S2
 

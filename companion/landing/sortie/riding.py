@@ -55,11 +55,28 @@ def _touches(s: Situation, config: CompanionConfig) -> bool:
 
 
 def rides_along(s: Situation, config: CompanionConfig) -> bool:
-    """Return whether the drone stands on a vehicle that drives: a take-off would begin at its speed."""
-    is_airborne = s.autopilot.armed and s.autopilot.landed is False
-    if is_airborne or vehicle_stands(s, config.chase):
+    """Return whether the drone stands on a vehicle that drives: a take-off would begin at its speed.
+
+    An autopilot whose motors turn on a deck that drives may say that it flies.
+    """
+    says_it_flies = s.autopilot.armed and s.autopilot.landed is False
+    if vehicle_stands(s, config.chase) or (says_it_flies and not _seems_to_stand(s, config)):
         return False
     return stands_on_deck(s, VEHICLE_M, ON_ROOF_M)
+
+
+def _seems_to_stand(s: Situation, config: CompanionConfig) -> bool:
+    """Return whether the drone moves with the deck as near to it as a contact is believed."""
+    if s.approach is None or not _moves_along(s):
+        return False
+    sees_gap = s.below.range_height_m is not None and not _touches(s, config)
+    return s.approach.height_m <= config.touchdown.height_max_m and not sees_gap
+
+
+def _moves_along(s: Situation) -> bool:
+    """Return whether the drone moves with the vehicle rather than stand still above the ground."""
+    a, drone = s.approach, s.drone
+    return a is not None and drone is not None and a.speed_m_s < math.hypot(*drone.velocity_enu_m_s[:2].tolist())
 
 
 def tell_riding(s: Situation, _: CompanionConfig) -> Cause:
@@ -73,8 +90,7 @@ def _is_carried_off(s: Situation, config: CompanionConfig) -> bool:
     A vehicle may be beside the drone whose place or speed is known only vaguely. An autopilot whose motors speed up may
     say that it has left the ground while its range finder still sees the deck at its feet.
     """
-    a, drone = s.approach, s.drone
-    if a is None or drone is None or a.speed_m_s >= math.hypot(*drone.velocity_enu_m_s[:2].tolist()):
+    if not _moves_along(s):
         return False
     stands = not s.autopilot.armed or s.autopilot.landed is True or _touches(s, config)
     return stands and not vehicle_stands(s, config.chase) and stands_on_deck(s, VEHICLE_M, ON_ROOF_M)

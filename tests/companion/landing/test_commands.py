@@ -98,7 +98,8 @@ def _on(beside_m: float, height_m: float, *, speed_m_s: float, armed: bool) -> S
 def test_start_on_the_roof_of_a_vehicle_that_drives_is_refused(phase: Phase) -> None:
     event, reply = answer(order(Command.START), phase, _on(0.3, 0.0, speed_m_s=5.0, armed=False), CONFIG)
     assert event is None
-    assert reply.reason == "the drone stands on the vehicle, which drives at 5.0 m/s: command launch, or stop it first"
+    told = "the drone stands on the vehicle, which drives at 5.0 m/s: stop it, or launch with the motors off"
+    assert reply.reason == told
 
 
 @pytest.mark.parametrize(

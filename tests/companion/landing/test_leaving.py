@@ -1,14 +1,15 @@
-"""A companion that ends in flight: the autopilot is to hover, but on the pad the motors are switched off first."""
+"""A companion that ends in flight: the autopilot is to hover, but low above the pad the drone climbs or lands first."""
 
 import pytest
 
 from companion.autopilots.ardupilot import ArduPilotDriver
 from companion.autopilots.driver import Driver
 from companion.autopilots.px4 import Px4Driver
+from companion.runtime.start_and_handover import LEAVE_MAX_S
 from companion.situation.phases import Phase
 from link.messages import Command
 from link.records import replace
-from tests.companion.world import DISARM, FLYING, SET_MODE, UTC_AHEAD_NS, Flight, on_deck, reached
+from tests.companion.world import CONFIG, DISARM, FLYING, SET_MODE, UTC_AHEAD_NS, Flight, on_deck, reached
 
 ON_VEHICLE = frozenset({Phase.TOUCHDOWN, Phase.ON_DECK})
 LOITER = 4.0, 3.0  # PX4's main and sub mode, the second and third parameter of the command
@@ -35,6 +36,41 @@ def test_companion_that_ends_on_the_pad_switches_the_motors_off_first() -> None:
     flight.run_until(Phase.SECURED, limit_s=0.6)
     assert not flight.view.armed
     assert Phase.TOUCHDOWN not in [phase for phase, *_ in flight.told(SET_MODE)]
+
+
+def low_above_pad(height_m: float) -> Flight:
+    """A descent that has come so low."""
+    flight = reached(Phase.DESCEND)
+    while flight.phase is Phase.DESCEND and height_above_pad_m(flight) > height_m:
+        flight.step()
+    assert flight.phase is Phase.DESCEND
+    return flight
+
+
+def height_above_pad_m(flight: Flight) -> float:
+    told_m = flight.step().status.height_above_pad_m
+    assert told_m is not None
+    return told_m
+
+
+@pytest.mark.slow
+def test_companion_that_ends_low_above_the_pad_climbs_before_the_autopilot_hovers() -> None:
+    flight = low_above_pad(0.6)
+    flight.leaving, modes = True, _modes(flight)
+    while _modes(flight) == modes:
+        height_m = height_above_pad_m(flight)
+        assert flight.phase is Phase.ABORT
+    assert height_m > CONFIG.descent.wait.height_m
+
+
+@pytest.mark.slow
+def test_companion_that_ends_below_the_commit_height_lands_first() -> None:
+    flight = low_above_pad(0.2)
+    flight.leaving, modes = True, _modes(flight)
+    flight.run_until(Phase.SECURED, limit_s=LEAVE_MAX_S)
+    assert not flight.view.armed
+    assert Phase.ABORT not in flight.history[-3:]
+    assert {phase for phase, *_ in flight.told(SET_MODE)[modes:]} <= {Phase.SECURED}
 
 
 def armed_on_ground() -> Flight:

@@ -7,7 +7,7 @@ from companion.autopilots.driver import DriverMemory
 from companion.autopilots.messages import TOLD_S, arm
 from companion.core.reasons import Reason
 from companion.landing.decisions.events import decide
-from companion.landing.sortie.riding import CARRIED_OFF, call_off
+from companion.landing.sortie.riding import CARRIED_OFF, call_off, rides_along
 from companion.landing.state.memory import ControlMemory
 from companion.situation.phases import Event, Phase
 from companion.situation.situation import Situation
@@ -52,6 +52,23 @@ def carried(
 )
 def test_drone_is_carried_off_that_stands_and_moves_with_the_vehicle(facts: Situation, *, is_off: bool) -> None:
     assert CARRIED_OFF.is_true(facts, CONFIG) is is_off
+
+
+@pytest.mark.parametrize(
+    ("facts", "rides"),
+    [
+        (carried(5.0, 4.9, armed=True, landed=False), True),  # a companion died as it touched: the motors turn on
+        (carried(5.0, 4.9, armed=False), True),
+        (carried(5.0, 4.9, armed=True, landed=False, range_m=0.02), True),
+        (carried(5.0, 4.9, armed=True, landed=False, range_m=0.3), False),  # it flies along
+        (carried(5.0, 0.1, armed=True, landed=False), False),  # the vehicle passes below a drone that hovers
+        (carried(0.1, 0.1, armed=True, landed=False), False),  # it stands
+    ],
+)
+def test_start_finds_a_drone_on_a_driving_roof_even_if_its_autopilot_says_that_it_flies(
+    facts: Situation, *, rides: bool
+) -> None:
+    assert rides_along(facts, CONFIG) is rides
 
 
 @pytest.mark.parametrize(("armed", "event"), [(True, Event.CARRIED_OFF), (False, Event.CALLED_OFF)])
