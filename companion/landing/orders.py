@@ -14,7 +14,7 @@ from companion.situation.phases import Phase
 from companion.situation.situation import Situation
 from link.records import replace
 
-_NEAR_PAD = frozenset({Phase.DESCEND, Phase.ABORT})
+_NEAR_PAD = frozenset({Phase.DESCEND, Phase.ABORT, Phase.LIFT_OFF})
 _DISARM_MAX_S = 1.0  # it takes 0.6 s where the plain one is refused; the companion waits for longer before it ends
 
 

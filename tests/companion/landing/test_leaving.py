@@ -11,7 +11,7 @@ from link.messages import Command
 from link.records import replace
 from tests.companion.world import CONFIG, DISARM, FLYING, SET_MODE, UTC_AHEAD_NS, Flight, on_deck, reached
 
-ON_VEHICLE = frozenset({Phase.TOUCHDOWN, Phase.ON_DECK})
+ON_VEHICLE = frozenset({Phase.TOUCHDOWN, Phase.ON_DECK, Phase.LIFT_OFF})
 LOITER = 4.0, 3.0  # PX4's main and sub mode, the second and third parameter of the command
 
 
@@ -60,6 +60,15 @@ def test_companion_that_ends_low_above_the_pad_climbs_before_the_autopilot_hover
     while _modes(flight) == modes:
         height_m = height_above_pad_m(flight)
         assert flight.phase is Phase.ABORT
+    assert height_m > CONFIG.descent.wait.height_m
+
+
+def test_companion_that_ends_as_it_lifts_off_climbs_clear_of_the_deck_before_the_autopilot_hovers() -> None:
+    flight = reached(Phase.LIFT_OFF)
+    flight.leaving, modes, begun_ns = True, _modes(flight), flight.monotonic_ns
+    while _modes(flight) == modes:
+        height_m = height_above_pad_m(flight)
+        assert (flight.monotonic_ns - begun_ns) * 1e-9 < LEAVE_MAX_S
     assert height_m > CONFIG.descent.wait.height_m
 
 
