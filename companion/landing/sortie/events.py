@@ -63,6 +63,7 @@ OWN_LOST = (
 )
 """Nobody knows where the drone is."""
 _OWN_LOST_REASONS = frozenset(condition.reason for condition in OWN_LOST)
+_VEHICLE_UNHEARD = frozenset({Reason.VEHICLE_DATA_OLD, Reason.VEHICLE_LINK_LOST})
 
 NOT_FOLLOWED = Condition(
     reason=Reason.SETPOINT_NOT_FOLLOWED,
@@ -88,7 +89,7 @@ def update_sortie(sortie: SortieMemory, phase: Phase, s: Situation, config: Comp
     if s.pad is not None:
         ahead = ahead_rad(StationFrame.VEHICLE if sortie.station is None else sortie.station.frame, s.pad, ahead)
     is_quiet = phase is Phase.ON_DECK and is_deck_quiet(s, config.sortie.launch)
-    is_found = phase is Phase.RALLY and not any(condition.is_true(s, config) for condition in LOST)
+    is_found = phase is Phase.RALLY and _is_found(s, config)
     sortie = replace(
         sortie,
         ahead_rad=ahead,
@@ -98,6 +99,10 @@ def update_sortie(sortie: SortieMemory, phase: Phase, s: Situation, config: Comp
         found_since_ns=_since(sortie.found_since_ns, s.monotonic_ns, holds_now=is_found),
     )
     return replace(sortie, warning=warn_of_way_home(sortie, phase, s, config))
+
+
+def _is_found(s: Situation, config: CompanionConfig) -> bool:
+    return not any(condition.is_true(s, config) for condition in LOST)
 
 
 def _since(since_ns: int | None, now_ns: int, *, holds_now: bool) -> int | None:
@@ -213,11 +218,20 @@ def _turn_home(sortie: SortieMemory, progress: Progress, s: Situation, config: C
 
 
 def _go_on(sortie: SortieMemory, progress: Progress, s: Situation, config: CompanionConfig) -> Decision | None:
-    """Return to what an outage of the autopilot's link has broken off, once drone and vehicle are heard again."""
-    is_outage = progress.may_retry and progress.cause.reason in _OWN_LOST_REASONS
-    if not (is_outage and s.autopilot.in_control and holds(HEARD, progress.held, s, config)):
+    """Return to what an outage has broken off, once drone and vehicle are heard again.
+
+    The vehicle's alone breaks off a lift-off; from beside the vehicle, or on its way home, the drone looks for it.
+    """
+    is_outage = progress.cause.reason in _OWN_LOST_REASONS or _is_lift_off_over(sortie, progress, s, config)
+    if not (is_outage and progress.may_retry and s.autopilot.in_control and holds(HEARD, progress.held, s, config)):
         return None
     return (Event.FOLLOW if sortie.follows else Event.RETURN), Cause(Reason.HEARD_AGAIN)
+
+
+def _is_lift_off_over(sortie: SortieMemory, progress: Progress, s: Situation, config: CompanionConfig) -> bool:
+    """Return whether a vehicle that was not heard broke off a lift-off, and can be followed now."""
+    was_lifting = sortie.follows and sortie.station is not None and progress.cause.reason in _VEHICLE_UNHEARD
+    return was_lifting and _is_found(s, config)
 
 
 def _stay_on_deck(progress: Progress, s: Situation, config: CompanionConfig) -> Decision | None:

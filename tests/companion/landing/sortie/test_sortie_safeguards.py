@@ -139,6 +139,18 @@ def test_drone_that_lost_its_own_place_beside_the_vehicle_goes_back_there_and_do
     assert flight.reason is Reason.HEARD_AGAIN
 
 
+@pytest.mark.parametrize("silent_s", [2.0, CONFIG.abort.time_limit_s + 2.0])
+def test_lift_off_that_a_silent_vehicle_broke_off_goes_on_to_the_station_once_that_is_heard(silent_s: float) -> None:
+    flight = reached(Phase.LIFT_OFF)
+    flight.sends_fixes = False
+    flight.run_until(Phase.ABORT, limit_s=3.0)
+    assert flight.reason is Reason.VEHICLE_DATA_OLD
+    flight.run(silent_s)
+    flight.sends_fixes = True
+    flight.run_until(Phase.FOLLOW, limit_s=20.0)
+    assert (flight.history[-3:], flight.reason) == ([Phase.ABORT, Phase.HOLD, Phase.FOLLOW], Reason.HEARD_AGAIN)
+
+
 def test_way_home_goes_on_after_an_outage_of_the_autopilots_link() -> None:
     flight = silent(Phase.RETURN, Phase.HOLD)
     flight.run(2.0)
