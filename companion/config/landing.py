@@ -4,7 +4,7 @@ from typing import Annotated
 
 from pydantic import Field, ValidationInfo, field_validator
 
-from link.program.toml_config import NotNegative, Positive, StrictModel
+from link.program.toml_config import POSITIVE_MIN, NotNegative, Positive, StrictModel
 
 FlownHeight = Annotated[float, Field(gt=0.0, le=120.0)]
 """Above the ground, or above the pad, m. Without a permit of its own no drone flies higher: regulation (EU) 2019/947,
@@ -47,12 +47,11 @@ class ChaseConfig(StrictModel):
     catch_up_speed_m_s: Positive = 10.0
     catch_up_s: Positive = 5.0
     # Slower than this is standing, or than so many standard deviations of a speed that is known less well than that:
-    # over poor data a parked vehicle seems to move by 0.3 m/s now and then.
-    parked_speed_m_s: Positive = 0.3
-    parked_speed_stds: NotNegative = 1.5
-    driving_hold_s: NotNegative = (
-        0.5  # faster than that for so long is driving: estimates from fixes of 0.1 m jump for 0.3 s
-    )
+    # over poor data a parked vehicle seems to move by 0.3 m/s now and then. What stands is not chased as it passes.
+    parked_speed_m_s: Annotated[float, Field(ge=POSITIVE_MIN, le=3.0)] = 0.3
+    parked_speed_stds: Annotated[float, Field(ge=0.0, le=5.0)] = 1.5
+    # Faster than that for so long is driving: estimates from fixes of 0.1 m jump for 0.3 s.
+    driving_hold_s: Annotated[float, Field(ge=0.0, le=5.0)] = 0.5
     parked_wait_s: NotNegative = 7.0  # a vehicle that stands may be about to depart
     time_limit_s: Positive = 60.0
 
