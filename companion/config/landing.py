@@ -15,9 +15,17 @@ class TakeoffConfig(StrictModel):
     """The climb to the waiting point and the wait."""
 
     waiting_height_m: FlownHeight = 5.0  # above where it took off; source report, section "Task"
-    reached_distance_m: Positive = 0.5
+    reached_distance_m: Positive = 0.5  # less than that height, or the drone is there on the ground
     refused_after_s: Positive = 30.0  # PX4 is armable 2.7 to 4.8 s after its start, ArduCopter 41.5 s
     time_limit_s: Positive = 60.0
+
+    @field_validator("reached_distance_m")
+    @classmethod
+    def _is_reached_in_the_air(cls, value: float, info: ValidationInfo) -> float:
+        waiting_height_m = info.data.get("waiting_height_m")
+        if waiting_height_m is not None and value >= waiting_height_m:
+            raise ValueError(f"it must be less than waiting_height_m, {waiting_height_m:g}, or no take-off is needed")
+        return value
 
     @field_validator("time_limit_s")
     @classmethod

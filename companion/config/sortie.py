@@ -4,7 +4,6 @@ from typing import Annotated
 
 from pydantic import Field
 
-from companion.config.landing import FlownHeight
 from link.program.toml_config import NotNegative, Positive, StrictModel
 
 Latitude = Annotated[float, Field(ge=-90.0, le=90.0)]
@@ -23,7 +22,9 @@ class LaunchConfig(StrictModel):
     placed_std_m: Positive = 0.1
     quiet_hold_s: NotNegative = 0.5  # half a period of a car's body on its springs, 1 Hz
     time_limit_s: Positive = 60.0  # without a quiet moment: the motors are switched off
-    clear_height_m: FlownHeight = 3.0  # of the feet above the pad, where the station's flight begins
+    # Of the feet above the pad, where the station's flight begins. A drone may seem to be 0.5 m above the deck on which
+    # it stands, and be taken for risen from there.
+    clear_height_m: Annotated[float, Field(ge=1.0, le=120.0)] = 3.0
     lift_off_time_limit_s: Positive = 15.0  # ArduCopter leaves the ground 3.6 s after it was told to
 
 

@@ -35,6 +35,7 @@ def test_printed_configuration_reads_back_as_the_same(tmp_path: Path) -> None:
         ("[chase]\nparked_speed_m_s = 50.0\n", "parked_speed_m_s"),
         ("[chase]\nparked_speed_stds = 1e4\n", "parked_speed_stds"),
         ("[chase]\ndriving_hold_s = 1e4\n", "driving_hold_s"),
+        ("[sortie.launch]\nclear_height_m = 0.5\n", "clear_height_m"),
         ("[setpoints]\nrate_hz = 0.0\n", "rate_hz"),
         ("[estimator.imm.sway]\ntilt_std_rad = 1e-300\n", "tilt_std_rad"),
         ("[estimator.imm.easing]\nbegins_after_s = 1e-300\n", "begins_after_s"),
@@ -59,6 +60,10 @@ def test_mistake_is_one_line_that_names_file_and_key(tmp_path: Path, text: str, 
     ("text", "said"),
     [
         ("[takeoff]\nrefused_after_s = 90.0\n", r"takeoff\.time_limit_s = 60\.0 .* more than refused_after_s, 90"),
+        (
+            "[takeoff]\nwaiting_height_m = 0.3\n",
+            r"takeoff\.reached_distance_m = 0\.5 .* less than waiting_height_m, 0\.3",
+        ),
         ("[takeoff]\ntime_limit_s = 30.0\n", r"takeoff\.time_limit_s = 30\.0 .* more than refused_after_s, 30"),
         (
             "[touchdown]\npress_acceleration_m_s2 = 3.0\n",
@@ -83,6 +88,7 @@ def test_mistake_is_one_line_that_names_file_and_key(tmp_path: Path, text: str, 
     ],
     ids=[
         "refusal never told",
+        "waiting point on the ground",
         "time limit too short",
         "press is no fall",
         "fall harder than the press",
