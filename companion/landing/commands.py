@@ -131,7 +131,7 @@ def answer(
         return None, _refuse(Cause(Reason.NOTHING_TO_DO, (order.command.value, phase.value)))
     missing = None
     if is_start or event is Event.LAUNCH:
-        missing = _missing_for_start(situation)
+        missing = _missing_for_start(situation, obstacle)
     if is_start:
         riding = tell_riding(situation, config) if rides_along(situation, config) else None
         missing = missing or riding or obstacle
@@ -168,12 +168,16 @@ def _refuse(why: Cause) -> CommandReply:
     return CommandReply(accepted=False, reason=sentence(why))
 
 
-def _missing_for_start(situation: Situation) -> Cause | None:
-    """Return the first thing that is missing for a start, None when nothing is."""
+def _missing_for_start(situation: Situation, obstacle: Cause | None) -> Cause | None:
+    """Return the first thing that is missing for a start, None when nothing is.
+
+    An autopilot that has just started tells its receiver's height within a second: one that lacks it is an obstacle by
+    then.
+    """
     view, drone = situation.autopilot, situation.drone
     missing = {
         Reason.NO_AUTOPILOT: not view.link_up,
-        Reason.NO_ORIGIN: view.frame is None,
+        Reason.NO_ORIGIN: view.frame is None or (not view.receiver.knows_geoid and obstacle is None),
         Reason.HEIGHTS_APART: not view.receiver.knows_geoid,
         Reason.NO_OWN_POSITION: drone is None,
         Reason.NO_OWN_ATTITUDE: drone is not None and not drone.attitude_known,

@@ -5,7 +5,7 @@ import itertools
 import pytest
 
 from companion.autopilots.driver import Receiver
-from companion.core.reasons import Reason
+from companion.core.reasons import Cause, Reason
 from companion.landing.commands import answer
 from companion.situation.phases import LANDING_PHASES, STATION_PHASES, Event, Phase, next_phase
 from companion.situation.situation import Situation
@@ -66,6 +66,13 @@ def test_take_off_is_called_off_before_the_motors_turn_and_held_after(command: C
     assert next_phase(Phase.TAKEOFF, event) is Phase.HOLD
 
 
+def test_start_says_how_to_compare_heights_once_the_autopilot_has_told_none_for_long() -> None:
+    facts = situation()
+    unplaced = replace(facts, autopilot=replace(facts.autopilot, receiver=Receiver()))
+    _, reply = answer(order(Command.START), Phase.IDLE, unplaced, CONFIG, Cause(Reason.HEIGHTS_APART))
+    assert reply == CommandReply(accepted=False, reason=Reason.HEIGHTS_APART.value)
+
+
 def test_start_says_what_is_missing() -> None:
     facts = situation()
     view, drone = facts.autopilot, facts.drone
@@ -73,7 +80,7 @@ def test_start_says_what_is_missing() -> None:
     for missing, reason in (
         (replace(facts, autopilot=replace(view, link_up=False)), "no autopilot is connected"),
         (replace(facts, autopilot=replace(view, frame=None)), "the autopilot has no origin yet"),
-        (replace(facts, autopilot=replace(view, receiver=Receiver())), Reason.HEIGHTS_APART.value),
+        (replace(facts, autopilot=replace(view, receiver=Receiver())), "the autopilot has no origin yet"),
         (replace(facts, drone=None), "the autopilot reports no local position yet"),
         (replace(facts, drone=replace(drone, attitude_known=False)), "the autopilot's attitude is too old"),
         (
