@@ -38,8 +38,8 @@ class SortieConfig(StrictModel):
     vehicle_radius_m: Positive = 3.0
     keep_out_margin_m: Positive = 1.0  # to that: rotors reach 0.35 m, and gusts move the drone by some decimetres
     # By so many standard deviations of the pad's place this grows: over fixes of 1 m a vehicle may be that much nearer.
-    # As many as `chase.unseen_height_stds`, beyond the margin.
-    keep_out_stds: NotNegative = 2.0
+    # As many as `chase.unseen_height_stds`, beyond the margin. Nothing else ends how high it climbs for them.
+    keep_out_stds: Annotated[float, Field(ge=0.0, le=5.0)] = 2.0
     ground_clearance_m: Positive = 2.0  # of the feet above the vehicle's road: kerbs, people, what hangs over its side
     # Where the drone waits for a vehicle that stays silent: latitude and longitude in degrees, and metres above the
     # autopilot's origin; none: where the vehicle was last forecast to pass.

@@ -36,6 +36,7 @@ def test_printed_configuration_reads_back_as_the_same(tmp_path: Path) -> None:
         ("[chase]\nparked_speed_stds = 1e4\n", "parked_speed_stds"),
         ("[chase]\ndriving_hold_s = 1e4\n", "driving_hold_s"),
         ("[sortie.launch]\nclear_height_m = 0.5\n", "clear_height_m"),
+        ("[sortie]\nkeep_out_stds = 1e4\n", "keep_out_stds"),
         ("[setpoints]\nrate_hz = 0.0\n", "rate_hz"),
         ("[estimator.imm.sway]\ntilt_std_rad = 1e-300\n", "tilt_std_rad"),
         ("[estimator.imm.easing]\nbegins_after_s = 1e-300\n", "begins_after_s"),
