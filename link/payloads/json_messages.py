@@ -1,9 +1,10 @@
 """The messages that travel as JSON: pad geometry, orders with their replies, and the landing status.
 
-Reading is strict about types and finiteness. A command with a name too many is refused, for it might have been
-meant to change what the command does; reports may hold more than this version knows.
+Reading is strict about types and finiteness, and what is given twice is refused. So is a command with a name too many,
+which might have been meant to change what the command does; reports may hold more than this version knows.
 """
 
+import json
 from typing import Annotated, Any, Self, TypeVar
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
@@ -24,6 +25,7 @@ from link.messages import (
     StationFrame,
 )
 from link.payloads.checks import PayloadError
+from link.program.text import printable
 
 __all__ = ["JSON_ENCODING", "LANDING_STATUS_SCHEMA", "PayloadError", "decode", "encode"]
 
@@ -184,6 +186,7 @@ def decode(message_type: type[M], payload: bytes) -> M:
         links = _LinkStatus.model_validate_json(payload) if isinstance(model, _LandingStatus) else None
     except ValidationError as error:
         raise _payload_error(error) from error
+    json.loads(payload, object_pairs_hook=_check_names, parse_int=str)  # only names are looked at
     fields = {name: getattr(model, name) for name in type(model).model_fields}
     forecast = fields.get("contact_forecast")
     if isinstance(forecast, _ContactForecast):
@@ -194,6 +197,19 @@ def decode(message_type: type[M], payload: bytes) -> M:
     if not isinstance(message, message_type):
         raise TypeError(f"the model of {message_type.__name__} gave a {type(message).__name__}")
     return message
+
+
+def _check_names(pairs: list[tuple[str, object]]) -> None:
+    """Check that no name stands twice in an object: either may be what was meant.
+
+    Raises:
+        PayloadError: If one does.
+    """
+    seen = set[str]()
+    for name, _ in pairs:
+        if name in seen:
+            raise PayloadError(f"{printable(name)}: given twice")
+        seen.add(name)
 
 
 def _validated(model: type[_Report], message: object) -> _Report:

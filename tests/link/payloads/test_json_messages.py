@@ -151,6 +151,29 @@ def test_what_an_order_lacks_is_told_in_our_own_words() -> None:
 
 
 @pytest.mark.parametrize(
+    ("message_type", "payload", "name"),
+    [
+        (Order, b'{"command": "hold", "command": "start"}', "command"),
+        (Order, b'{"command": "hold", "command": "hold"}', "command"),
+        (Order, b'{"command": "hold", "\\u0063ommand": "start"}', "command"),
+        (Order, b'{"command": "follow", "offset_m": [-5, 2, 3], "offset_m": [5, 2, 3]}', "offset_m"),
+        (PadGeometry, encode(PAD)[:-1] + b', "height_m": 0.5}', "height_m"),
+        (PadGeometry, encode(PAD)[:-1] + b', "later": [{"a": 1, "a": 2}]}', "a"),
+        (CommandReply, b'{"accepted": false, "reason": "", "accepted": true}', "accepted"),
+        (LandingStatus, encode(STATUS)[:-1] + b', "armed": false}', "armed"),
+    ],
+)
+def test_what_is_given_twice_is_refused(message_type: type[Message], payload: bytes, name: str) -> None:
+    with pytest.raises(PayloadError, match=rf"^{name}: given twice$"):
+        decode(message_type, payload)
+
+
+@pytest.mark.parametrize("later", [b"1" * 4300, b"[" * 150 + b"]" * 150, b'"\\u00e4"', b"1e308", b"-0"])
+def test_a_pad_of_a_later_version_may_hold_whatever_json_can(later: bytes) -> None:
+    assert decode(PadGeometry, encode(PAD)[:-1] + b', "later": ' + later + b"}") == PAD
+
+
+@pytest.mark.parametrize(
     "changes",
     [
         {"size_m": [0.0, 1.0]},
