@@ -4,6 +4,7 @@ from collections.abc import Callable
 from math import radians
 
 from companion.autopilots.driver import AutopilotView, Receiver
+from companion.autopilots.own_reports import HISTORY_NS
 from companion.core.data import OwnState, RangeReading
 from link.frames.geodesy import Datum
 from link.mavlink.clock_map import ClockMap
@@ -20,8 +21,14 @@ _INVALID = 1  # of a signal's quality in percent; 0 is unknown
 def with_sensor(view: AutopilotView, message: Message, clock: ClockMap, own_at: OwnAt) -> AutopilotView:
     """Return the view after a DISTANCE_SENSOR, with the drone as `own_at` has it, or the first battery's status."""
     if message.get_type() == "DISTANCE_SENSOR":
-        return replace(view, range_down=_range_reading(message, clock, own_at) or view.range_down)
+        told = _range_reading(message, clock, own_at)
+        return view if told is None or _is_late(told, view.range_down) else replace(view, range_down=told)
     return _with_battery(view, battery_share(message)) if is_of_first_battery(message) else view
+
+
+def _is_late(told: RangeReading, known: RangeReading | None) -> bool:
+    """Return whether a reading is older than the known one; much older ones say that the clock was set back."""
+    return known is not None and 0 <= known.t_ns - told.t_ns <= HISTORY_NS
 
 
 def _with_battery(view: AutopilotView, told: float | None) -> AutopilotView:
