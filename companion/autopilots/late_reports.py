@@ -1,19 +1,20 @@
-"""Finds state reports that a newer one has overtaken, by MAVLink's sequence numbers.
+"""Finds reports of the state that newer messages have overtaken, by MAVLink's sequence numbers.
 
-A link that jitters delivers datagrams out of order. A heartbeat from before a change of mode, taken after one from
-behind it, reads as a pilot who has changed the mode.
+A link that jitters delivers datagrams out of order, and one that repeats old ones may have lost the first. A heartbeat
+from before a change of mode, taken after one from behind it, reads as a pilot who has changed the mode.
 Source: MAVLink guide, "Packet serialization": each sender counts its packets by 8 bits.
 """
 
 from link.mavlink.dialect import Message
 
-_REPORTS = frozenset({"HEARTBEAT", "CURRENT_MODE", "EXTENDED_SYS_STATE"})
-_OVERTAKEN_MAX = 32  # packets: 0.1 s of some 300 a second; more is a sequence that restarted
-_OVERTAKEN_S = 0.5  # and the same once nothing was reported for so long
+_REPORTS = frozenset({"HEARTBEAT", "CURRENT_MODE", "EXTENDED_SYS_STATE", "GPS_RAW_INT"})
+_NUMBERS = 256
+_AHEAD_MAX = 64  # packets lost in a row: 0.2 s of some 300 a second; more may be an old one, counted around the circle
+_SILENT_S = 0.5  # without one in order the numbers tell nothing: so many may have been lost, or the count began anew
 
 
 class LateReports:
-    """Knows the newest report of the state, and of which kinds the last one was late.
+    """Knows the newest message, and of which kinds of reports the last one was late.
 
     Jitter has one report overtaken now and then. A forged number makes all true ones late: of a kind that is late twice
     in a row the second counts, and what follows.
@@ -25,19 +26,17 @@ class LateReports:
 
     def is_late(self, message: Message, local_ns: int) -> bool:
         """Take a message, and return whether it is a report that was sent before one that has come already."""
-        kind = message.get_type()
-        if kind not in _REPORTS:
+        kind, number = message.get_type(), message.get_seq()
+        if not self._is_overtaken(number, local_ns):
+            self._newest = number, local_ns
+            self._late_kinds.discard(kind)
             return False
-        if self._is_overtaken(message.get_seq(), local_ns):
-            is_first = kind not in self._late_kinds
-            self._late_kinds.add(kind)
-            return is_first
-        self._late_kinds.discard(kind)
-        self._newest = message.get_seq(), local_ns
-        return False
+        is_first = kind in _REPORTS and kind not in self._late_kinds
+        self._late_kinds.add(kind)
+        return is_first
 
     def _is_overtaken(self, number: int, local_ns: int) -> bool:
         if self._newest is None:
             return False
-        newest, heard_ns = self._newest
-        return 0 < (newest - number) % 256 <= _OVERTAKEN_MAX and (local_ns - heard_ns) * 1e-9 < _OVERTAKEN_S
+        newest, in_order_ns = self._newest
+        return (number - newest) % _NUMBERS > _AHEAD_MAX and (local_ns - in_order_ns) * 1e-9 < _SILENT_S

@@ -21,6 +21,7 @@ from scenarios.faults.trial import SCENARIO, SEED
 _ARMED, _DISARMED, _OFFBOARD, _POSITION = 217, 29, 6 << 16, 3 << 16
 _HOUR_US = 3_600_000_000
 _LATER_NS = 1_000_000
+_NUMBERS_APART = 32  # one of them is ahead of the autopilot's by so little that it is not late
 _ARMED_S = 3.0  # from the start until the companion knows of an armed drone
 _FACTS = (
     "in_control",
@@ -122,10 +123,15 @@ def armed_flight() -> FaultFlight:
 
 
 def changed_by(name: str, flight: FaultFlight) -> frozenset[str]:
-    """Return which facts an unsigned spoof changes, under the autopilot's own address."""
+    """Return which facts an unsigned spoof changes, under the autopilot's own address, whatever its number is."""
+    by_number = (_changed_by_number(name, flight, number) for number in range(0, 256, _NUMBERS_APART))
+    return frozenset[str]().union(*by_number)
+
+
+def _changed_by_number(name: str, flight: FaultFlight, number: int) -> frozenset[str]:
     link = deepcopy(flight.companion.autopilot)
     before = _facts(link)
-    forged = MavlinkCodec(1, 1).encode(SPOOFS[name](_now(flight)))
+    forged = MavlinkCodec(1, 1, first_number=number).encode(SPOOFS[name](_now(flight)))
     link.receive(forged, flight.local_ns + _LATER_NS, is_datagram=True)
     now = _facts(link)
     changed = frozenset(fact for fact in before if now[fact] != before[fact])

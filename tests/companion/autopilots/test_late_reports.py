@@ -22,8 +22,16 @@ def landed_state(number: int) -> Message:
     return message
 
 
+def attitude(number: int) -> Message:
+    message = mavlink.MAVLink_attitude_quaternion_message(1, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    message.pack(mavlink.MAVLink(None))
+    message.get_header().seq = number
+    return message
+
+
 @pytest.mark.parametrize(
-    ("newest", "number", "is_late"), [(9, 8, True), (3, 250, True), (250, 3, False), (9, 9, False)]
+    ("newest", "number", "is_late"),
+    [(9, 8, True), (3, 250, True), (250, 3, False), (9, 9, False), (150, 23, True), (10, 139, True), (10, 50, False)],
 )
 def test_report_that_was_overtaken_is_late_also_where_the_count_begins_anew(
     newest: int, number: int, *, is_late: bool
@@ -33,11 +41,19 @@ def test_report_that_was_overtaken_is_late_also_where_the_count_begins_anew(
     assert reports.is_late(report(number), SECOND_NS // 20) is is_late
 
 
-def test_sequence_that_began_anew_is_heard() -> None:
+def test_sequence_that_began_anew_is_heard_by_the_second_report_of_a_kind_and_after_half_a_second() -> None:
     reports = LateReports()
     reports.is_late(report(200), 0)
-    assert not reports.is_late(report(100), SECOND_NS // 20)
-    assert not reports.is_late(report(80), SECOND_NS)
+    assert [reports.is_late(report(number), SECOND_NS // 20) for number in (100, 104)] == [True, False]
+    assert not reports.is_late(report(4), SECOND_NS)
+
+
+@pytest.mark.parametrize("packets", [40, 100, 180])
+def test_report_that_other_messages_have_overtaken_is_late_however_many_of_them_came(packets: int) -> None:
+    reports = LateReports()
+    for number in range(1, packets + 1):
+        assert not reports.is_late(attitude(number % 256), number * SECOND_NS // 300)
+    assert reports.is_late(report(0), packets * SECOND_NS // 300)
 
 
 def test_second_late_report_of_a_kind_counts_whatever_number_somebody_forges() -> None:
