@@ -2,7 +2,7 @@
 
 Framing is not left to pymavlink: after a wrong checksum it throws away as many bytes as the broken frame claimed to
 have, good frames included. Here the search goes on at the next byte. Each sender's sequence numbers tell what was lost,
-not what came late or twice.
+not what came late or twice. A frame of an autopilot that a network delivers again is dropped.
 """
 
 import struct
@@ -10,46 +10,10 @@ import struct
 from link.mavlink.contents import as_version1, frame_of, message_of
 from link.mavlink.dialect import Message, mavlink
 from link.mavlink.framing import MARKER_V1, MARKER_V2, Stream, message_id_at
+from link.mavlink.repeats import RepeatedFrames
+from link.mavlink.sequence import NUMBERS, SequenceTracker
 from link.mavlink.signing import Signing
 from link.mavlink.statistics import CodecStatistics
-
-_NUMBERS = 256
-_WINDOW = 128  # a step of less than half the circle is forward, the others are looks back
-_ALL_SEEN = (1 << _WINDOW) - 1
-
-
-class SequenceTracker:
-    """Follows one sender's sequence numbers; a message that comes late is taken back from the lost ones."""
-
-    __slots__ = ("_newest", "_seen", "lost")
-
-    def __init__(self) -> None:
-        self.lost = 0
-        self._newest: int | None = None
-        self._seen = _ALL_SEEN  # bit n: the message n before the newest has come
-
-    def see(self, number: int) -> None:
-        """Takes note of one message.
-
-        Args:
-            number: its sequence number, 0 to 255.
-        """
-        if self._newest is None:
-            self._newest = number
-            return
-        step = (number - self._newest) % _NUMBERS
-        if 0 < step < _WINDOW:
-            self._newest = number
-            self.lost += step - 1
-            self._seen = ((self._seen << step) | 1) & _ALL_SEEN
-        else:
-            self._look_back(-step % _NUMBERS)
-
-    def _look_back(self, steps: int) -> None:
-        if steps < _WINDOW and not self._seen >> steps & 1:
-            self._seen |= 1 << steps
-            self.lost -= 1
-
 
 _PEERS_MAX = 64  # whose unfinished frames are kept; more than a transport has at a time
 _SENDERS_MAX = 64  # whose sequences are followed; forgers would make up 65,536, and all are summed with each status
@@ -79,18 +43,19 @@ class MavlinkCodec:
     ) -> None:
         self.signing = signing
         self._system_id, self._component_id = system_id, component_id
-        self._sequence = first_number % _NUMBERS
+        self._sequence = first_number % NUMBERS
         self._answers_version1 = answers_version1
         self._version1_heard = self._version2_heard = False
         self._streams: dict[int, Stream] = {}
         self._records_input = records_input
         self._input: list[bytes] = []
         self._sequences: dict[tuple[int, int], SequenceTracker] = {}
+        self._repeats = RepeatedFrames()
         self._unknown_messages = 0
         self._bytes_received = self._messages_received = 0
         self._messages_sent = 0
         self._bad_bytes = self._bad_frames = 0
-        self._refused = 0
+        self._refused = self._repeated = 0
 
     @property
     def statistics(self) -> CodecStatistics:
@@ -104,6 +69,7 @@ class MavlinkCodec:
             bad_bytes=self._bad_bytes,
             unknown_messages=self._unknown_messages,
             refused_messages=self._refused,
+            repeated_messages=self._repeated,
             lost_messages=sum(one.lost for one in sequences),
         )
 
@@ -129,7 +95,7 @@ class MavlinkCodec:
                 return frame
         elif self.signing is not None:
             frame = self.signing.sign(frame)
-        self._sequence = (self._sequence + 1) % _NUMBERS
+        self._sequence = (self._sequence + 1) % NUMBERS
         self._messages_sent += 1
         return frame
 
@@ -143,7 +109,8 @@ class MavlinkCodec:
         Args:
             data: what was received since the last call.
             peer: from whom; a frame is put together of one peer's bytes only.
-            t_ns: the time now; a frame of a stream whose rest does not come for `WAIT_MAX_NS` is none. None waits on.
+            t_ns: the time now; a frame of a stream whose rest does not come for `WAIT_MAX_NS` is none, and an
+                autopilot's that has come before is dropped. None waits on and takes everything.
             is_datagram: `data` are whole frames, the end of which is theirs; frames of a stream may be cut anywhere.
 
         Returns:
@@ -154,7 +121,7 @@ class MavlinkCodec:
         stream.add(data, t_ns)
         messages: list[Message] = []
         while (found := stream.find(ends=is_datagram)) is not None:
-            self._take(stream, *found, messages)
+            self._take(stream, *found, messages, t_ns)
         stream.settle(t_ns, ends=is_datagram)
         self._count_bad(stream)
         return messages
@@ -186,33 +153,42 @@ class MavlinkCodec:
         self._bad_frames += stream.bad_frames
         stream.bad_bytes = stream.bad_frames = 0
 
-    def _take(self, stream: Stream, start: int, size: int, messages: list[Message]) -> None:
+    def _take(self, stream: Stream, start: int, size: int, messages: list[Message], t_ns: int | None) -> None:
         """Decodes what may be a frame, and goes on behind it or, if it is none, at the next byte."""
         frame = stream.buffer[start : start + size]
         message_id = message_id_at(frame, 0)
-        if message_id not in mavlink.mavlink_map:
-            if not _is_followed_by_frame(stream, start + size):
-                stream.skip()
-                return
+        is_known = message_id in mavlink.mavlink_map
+        if not is_known and not _is_followed_by_frame(stream, start + size):
+            stream.skip()
+            return
+        message = message_of(frame, message_id) if is_known else None
+        if is_known and message is None:
+            stream.skip(has_wrong_checksum=True)
+            return
+        stream.take(size, is_known=is_known)
+        if message is None:
             self._unknown_messages += 1
-        else:
-            message = message_of(frame, message_id)
-            if message is None:
-                stream.skip(has_wrong_checksum=True)
-                return
-            if self.signing is not None and not self.signing.accepts(frame):
-                self._refused += 1
-                stream.take(size, is_known=True)
+        elif self.signing is not None and not self.signing.accepts(frame):
+            self._refused += 1
+            return
+        if self._records_input:
+            self._input.append(bytes(frame))
+        sequence, system, component = frame[2:5] if frame[0] == MARKER_V1 else frame[4:7]
+        if message is not None:
+            if t_ns is not None and self._is_repeat(frame, (system, component), sequence, t_ns):
+                self._repeated += 1
                 return
             self._receive(message, frame, messages)
-        stream.take(size, is_known=message_id in mavlink.mavlink_map)
         # An unknown message has no checksum to prove its sender, so it introduces none.
-        sequence, system, component = frame[2:5] if frame[0] == MARKER_V1 else frame[4:7]
         tracker = self._sequences.get((system, component))
         if tracker is not None:
             tracker.see(sequence)
-        if self._records_input:
-            self._input.append(bytes(frame))
+
+    def _is_repeat(self, frame: bytearray, sender: tuple[int, int], sequence: int, t_ns: int) -> bool:
+        if sender[1] != mavlink.MAV_COMP_ID_AUTOPILOT1:
+            return False  # a script that gives one order begins its numbers anew each time
+        tracker = self._sequences.get(sender)
+        return self._repeats.has(frame, sender[0], t_ns, is_next=tracker is not None and tracker.follows(sequence))
 
     def _receive(self, message: Message, frame: bytearray, messages: list[Message]) -> None:
         self._version1_heard |= frame[0] == MARKER_V1

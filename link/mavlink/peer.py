@@ -142,6 +142,7 @@ class RestartWatch:
         self._newest_ns = 0
         self._heard_ns: int | None = None
         self._earlier_in_a_row = 0
+        self._earlier_ns = 0
         self._ahead_in_a_row = 0
 
     def doubts(self, boot_ns: int, t_ns: int, clock: ClockMap) -> bool:
@@ -171,7 +172,10 @@ class RestartWatch:
         if self._is_late(boot_ns, t_ns):
             self._earlier_in_a_row = 1
             return None
-        self._earlier_in_a_row += 1
+        # A clock runs on: frames of one instant, which come late together, tell of it once.
+        if self._earlier_in_a_row == 0 or boot_ns > self._earlier_ns:
+            self._earlier_in_a_row += 1
+        self._earlier_ns = boot_ns
         if self._earlier_in_a_row < _JUMP_CONFIRMATIONS:
             return None
         before_ns, self._newest_ns, self._heard_ns = self._newest_ns, boot_ns, t_ns

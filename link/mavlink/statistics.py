@@ -14,6 +14,7 @@ class CodecStatistics(Struct, frozen=True, kw_only=True):
         bad_bytes: bytes that belonged to no frame.
         unknown_messages: frames whose message id the dialect does not know.
         refused_messages: without a right signature where one is required.
+        repeated_messages: that came before, byte for byte.
         lost_messages: gaps in the sequence numbers of the first 64 senders.
     """
 
@@ -24,6 +25,7 @@ class CodecStatistics(Struct, frozen=True, kw_only=True):
     bad_bytes: int
     unknown_messages: int
     refused_messages: int
+    repeated_messages: int
     lost_messages: int
 
 
