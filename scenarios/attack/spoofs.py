@@ -70,6 +70,10 @@ def _receiver() -> Message:
     return mavlink.MAVLink_gps_raw_int_message(0, 3, *at, 80, 80, 0, 0, 12, alt_ellipsoid=100_000)
 
 
+def _receiver_without_fix() -> Message:
+    return mavlink.MAVLink_gps_raw_int_message(0, mavlink.GPS_FIX_TYPE_NO_FIX, 0, 0, 0, 65535, 65535, 0, 0, 0)
+
+
 def _switched(to: Command, boot_ms: int) -> Message:
     pulses_us = [1500] * 18
     pulses_us[_SWITCH_CHANNEL - 1] = _PULSES_US[to]
@@ -92,6 +96,7 @@ SPOOFS: Mapping[str, Callable[[Now], Message]] = {
     "battery": lambda _: mavlink.MAVLink_battery_status_message(0, 0, 0, 0, [3000] * 10, 0, 0, 0, 1),
     "pilot's switch": lambda now: _switched(Command.START, now.boot_ms),
     "geoid": lambda _: _receiver(),
+    "no fix": lambda _: _receiver_without_fix(),
 }
 
 UNSIGNED: Mapping[str, frozenset[str]] = {
@@ -110,6 +115,7 @@ UNSIGNED: Mapping[str, frozenset[str]] = {
     "battery": frozenset(),
     "pilot's switch": frozenset(),
     "geoid": frozenset(),
+    "no fix": frozenset({"has_fix"}),
 }
 """What each changes under the autopilot's own address: docs/safety.md, "Who may give orders"."""
 
@@ -211,4 +217,5 @@ def _now(flight: FaultFlight) -> Now:
 def _facts(link: AutopilotLink) -> dict[str, object]:
     view = link.state.view
     facts: dict[str, object] = {name: getattr(view, name) for name in _FACTS}
+    facts["has_fix"] = view.receiver.has_fix
     return facts | {"own": link.state.own, "timeout_s": link.timeout_s, "clock": link.session.clock}
