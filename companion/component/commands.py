@@ -3,6 +3,8 @@
 MAV_CMD_USER_1 starts a landing, USER_2 holds it, USER_3 aborts it; USER_4 launches from the vehicle, USER_5 calls home
 to it. A start is acknowledged as in progress with its percentage, once a second and with each phase, until it has
 ended. Each command has to name the component: what a ground station sends to all components does none of this.
+What begins a flight is obeyed once: a network that delivers it again, after a hold or when the pilot has taken over,
+must not begin another. It is told by its bytes, its number included; holds and aborts are always obeyed.
 Source: MAVLink command protocol, https://mavlink.io/en/services/command.html.
 """
 
@@ -26,6 +28,7 @@ _START = int(mavlink.MAV_CMD_USER_1)
 _ENDS = (int(mavlink.MAV_CMD_USER_2), int(mavlink.MAV_CMD_USER_3), None)  # what a landing or a sortie ends by
 _PROGRESS_NS = 1_000_000_000  # MAVSDK waits for 3 s, QGroundControl for 3 s
 _REPEATED_NS = 5_000_000_000  # an acknowledgement that was lost is given again for so long
+_OBEYED_NS = 30_000_000_000  # so late a network may deliver a datagram again
 _WAITING_MAX = 16
 _PERCENT_UNKNOWN = 255
 _PERCENT = {
@@ -63,6 +66,8 @@ class StationCommands:
         self._asked: _Asked | None = None
         self._running: _Asked | None = None
         self._answered: dict[_Asked, tuple[int, int]] = {}
+        self._frames: dict[_Asked, bytes] = {}
+        self._obeyed_ns: dict[bytes, int] = {}
         self._progress = Timer(_PROGRESS_NS)
         self._told: Phase | None = None
 
@@ -76,6 +81,12 @@ class StationCommands:
         result, answered_ns = self._answered.get(asked, (0, local_ns - _REPEATED_NS))
         if getattr(message, "confirmation", 0) and local_ns - answered_ns < _REPEATED_NS:
             return [asked.acknowledge(result)]
+        if asked.number not in _ENDS:
+            frame = bytes(message.get_msgbuf())
+            if local_ns - self._obeyed_ns.get(frame, local_ns - _OBEYED_NS) < _OBEYED_NS:
+                return [asked.acknowledge(mavlink.MAV_RESULT_TEMPORARILY_REJECTED)]
+            waiting = {who: its for who, its in self._frames.items() if who in (*self._waiting, self._asked)}
+            self._frames = waiting | {asked: frame}
         return self._wait(asked)
 
     def cancel(self, message: Message) -> list[Message]:
@@ -104,6 +115,9 @@ class StationCommands:
             return []
         if not reply.accepted:
             return [asked.acknowledge(mavlink.MAV_RESULT_TEMPORARILY_REJECTED)]
+        if asked in self._frames:
+            lately = {frame: then for frame, then in self._obeyed_ns.items() if local_ns - then < _OBEYED_NS}
+            self._obeyed_ns = lately | {self._frames.pop(asked): local_ns}
         if asked.number == _START:
             self._running, self._told = asked, None
             return []  # the first of its progress follows at once

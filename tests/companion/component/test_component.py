@@ -12,7 +12,7 @@ from companion.situation.phases import Phase
 from link.frames.geodesy import Datum
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import DRAFT_MESSAGES, MAV_RESULT_CANCELLED, Message, mavlink
-from link.messages import Command, PadGeometry
+from link.messages import Command, CommandReply, PadGeometry
 from tests.companion.peer import Setup
 from tests.companion.world import FRAME
 
@@ -72,6 +72,42 @@ def test_what_waits_to_begin_is_refused_and_what_ends_a_landing_still_waits() ->
     refused = [(one.command, one.result) for one in commands.refuse_beginnings()]
     assert refused == [(START, REJECTED), (mavlink.MAV_CMD_USER_4, REJECTED)]
     assert [commands.next(), commands.next(), commands.next()] == [Command.ABORT, Command.HOLD, None]
+
+
+LAUNCH = mavlink.MAV_CMD_USER_4
+
+
+def _given(number: int, sequence: int) -> Message:
+    """A command as it comes, the `sequence`-th message of its sender."""
+    sent = mavlink.MAVLink_command_long_message(*OWN, number, 0, 0, 0, 0, 0, 0, 0, 0)
+    (message,) = MavlinkCodec(*OWN).decode(MavlinkCodec(255, 190, first_number=sequence).encode(sent))
+    return message
+
+
+def _is_obeyed(commands: StationCommands, message: Message, t_s: float, *, accepts: bool = True) -> bool:
+    t_ns = round(t_s * 1e9)
+    answers = commands.take(message, t_ns)
+    if commands.next() is not None:
+        commands.answer(CommandReply(accepted=accepts, reason=""), t_ns)
+    return answers == []
+
+
+def test_command_that_begins_something_is_obeyed_once_however_often_its_datagram_comes() -> None:
+    commands = StationCommands()
+    assert _is_obeyed(commands, _given(LAUNCH, 7), 0.0)
+    assert _is_obeyed(commands, _given(HOLD, 8), 1.0)
+    for t_s in (1.1, 15.0, 29.0):
+        (answer,) = commands.take(_given(LAUNCH, 7), round(t_s * 1e9))
+        assert answer.result == REJECTED
+    assert _is_obeyed(commands, _given(LAUNCH, 9), 29.0)
+    assert _is_obeyed(commands, _given(LAUNCH, 7), 30.5)  # of a script that began its numbers anew
+
+
+def test_command_that_was_refused_may_come_again_and_what_ends_a_landing_always() -> None:
+    commands = StationCommands()
+    assert _is_obeyed(commands, _given(START, 7), 0.0, accepts=False)
+    assert _is_obeyed(commands, _given(START, 7), 0.1)
+    assert [_is_obeyed(commands, _given(ABORT, 8), t_s) for t_s in (1.0, 1.1, 2.0)] == [True] * 3
 
 
 @pytest.mark.slow
