@@ -6,6 +6,7 @@ import numpy as np
 
 from companion.config.companion import CompanionConfig
 from companion.core.data import Array
+from companion.integrity.contradictions import contradicts_itself
 from companion.landing.sortie.way_home import home_s
 from companion.landing.state.memory import StepMemory
 from companion.landing.steering.targets import HORIZON_OFFSETS_S, stopping_point
@@ -68,12 +69,17 @@ def _to_land(memory: StepMemory, situation: Situation) -> StepMemory:
 
 
 def clear_of_vehicle(anchor_enu_m: Array, memory: StepMemory, situation: Situation, config: CompanionConfig) -> Array:
-    """Return where a sortie's drone stops: no lower than above the roof that may drive up to it."""
-    pad = situation.pad
-    if not memory.sortie.is_out or pad is None or memory.progress.phase is not Phase.HOLD:
+    """Return where a sortie's drone stops: no lower than above the roof that may drive up to it, where it is known."""
+    if not memory.sortie.is_out or memory.progress.phase is not Phase.HOLD or contradicts_itself(situation, config):
         return anchor_enu_m
-    clear_m = float(pad.position_enu_m[0, 2]) + situation.feet_offset_m + config.chase.height_m
-    return np.array([*anchor_enu_m[:2], max(float(anchor_enu_m[2]), clear_m)])
+    return np.array([*anchor_enu_m[:2], _clear_up_m(float(anchor_enu_m[2]), situation, config)])
+
+
+def _clear_up_m(up_m: float, s: Situation, config: CompanionConfig) -> float:
+    """Return the height in W of a drone that is above the roof, not below `up_m`."""
+    if s.pad is None:
+        return up_m
+    return max(up_m, float(s.pad.position_enu_m[0, 2]) + s.feet_offset_m + config.chase.height_m)
 
 
 def _without_ground(memory: StepMemory) -> StepMemory:
@@ -93,18 +99,24 @@ def over_deck(sortie: SortieMemory, s: Situation, config: CompanionConfig) -> So
 
 
 def _to_rally(memory: StepMemory, s: Situation, config: CompanionConfig) -> StepMemory:
-    """Return the memory with where the vehicle was last forecast to pass when the drone can be there."""
+    """Return the memory with where the vehicle was last forecast to pass when the drone can be there.
+
+    Nobody knows that, nor the roof's height, of a vehicle whose data contradict themselves: the drone stops, and rises
+    by as much as clears the vehicle that it was beside.
+    """
     reference, pad = memory.model.reference, s.pad
     if reference is None:
         return memory
     anchor, place = stopping_point(reference), None
-    if pad is not None:
+    if contradicts_itself(s, config):
+        clear_m = float(reference.position_enu_m[2]) + config.chase.height_m
+        anchor = np.array([*anchor[:2], max(float(anchor[2]), clear_m)])
+    elif pad is not None:
         ahead_s = home_s(s, config) - config.limits.landing_time_s
         ahead_s = max(ahead_s if math.isfinite(ahead_s) else 0.0, _LOOK_AHEAD_S)
         way = (pad.position_enu_m[0] + pad.velocity_enu_m_s[0] * ahead_s - reference.position_enu_m)[:2]
         within = min(config.limits.range_max_m / max(math.hypot(*way.tolist()), 1.0), 1.0)
         place = reference.position_enu_m[:2] + within * way
-        clear_m = float(pad.position_enu_m[0, 2]) + s.feet_offset_m + config.chase.height_m
-        place = np.array([*place, max(float(reference.position_enu_m[2]), clear_m)])
+        place = np.array([*place, _clear_up_m(float(reference.position_enu_m[2]), s, config)])
     sortie = replace(memory.sortie, place_enu_m=place, found_since_ns=None)
     return replace(memory, sortie=sortie, places=replace(memory.places, anchor_enu_m=anchor))
