@@ -6,9 +6,9 @@ Source: MAVLink guide, "Packet serialization": each sender counts its packets by
 """
 
 from link.mavlink.dialect import Message
+from link.mavlink.sequence import NUMBERS
 
 _REPORTS = frozenset({"HEARTBEAT", "CURRENT_MODE", "EXTENDED_SYS_STATE", "GPS_RAW_INT"})
-_NUMBERS = 256
 _AHEAD_MAX = 64  # packets lost in a row: 0.2 s of some 300 a second; more may be an old one, counted around the circle
 _SILENT_S = 0.5  # without one in order the numbers tell nothing: so many may have been lost, or the count began anew
 
@@ -39,4 +39,4 @@ class LateReports:
         if self._newest is None:
             return False
         newest, in_order_ns = self._newest
-        return (number - newest) % _NUMBERS > _AHEAD_MAX and (local_ns - in_order_ns) * 1e-9 < _SILENT_S
+        return (number - newest) % NUMBERS > _AHEAD_MAX and (local_ns - in_order_ns) * 1e-9 < _SILENT_S

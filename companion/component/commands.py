@@ -14,6 +14,7 @@ from typing import NamedTuple
 from companion.core.reasons import Reason
 from companion.situation.phases import Phase
 from link.mavlink.dialect import MAV_RESULT_CANCELLED, Message, mavlink
+from link.mavlink.repeats import DELIVERED_AGAIN_NS
 from link.mavlink.timer import Timer
 from link.messages import Command, CommandReply, LandingStatus
 
@@ -28,7 +29,6 @@ _START = int(mavlink.MAV_CMD_USER_1)
 _ENDS = (int(mavlink.MAV_CMD_USER_2), int(mavlink.MAV_CMD_USER_3), None)  # what a landing or a sortie ends by
 _PROGRESS_NS = 1_000_000_000  # MAVSDK waits for 3 s, QGroundControl for 3 s
 _REPEATED_NS = 5_000_000_000  # an acknowledgement that was lost is given again for so long
-_OBEYED_NS = 30_000_000_000  # so late a network may deliver a datagram again
 _WAITING_MAX = 16
 _PERCENT_UNKNOWN = 255
 _PERCENT = {
@@ -83,7 +83,7 @@ class StationCommands:
             return [asked.acknowledge(result)]
         if asked.number not in _ENDS:
             frame = bytes(message.get_msgbuf())
-            if local_ns - self._obeyed_ns.get(frame, local_ns - _OBEYED_NS) < _OBEYED_NS:
+            if local_ns - self._obeyed_ns.get(frame, local_ns - DELIVERED_AGAIN_NS) < DELIVERED_AGAIN_NS:
                 return [asked.acknowledge(mavlink.MAV_RESULT_TEMPORARILY_REJECTED)]
             waiting = {who: its for who, its in self._frames.items() if who in (*self._waiting, self._asked)}
             self._frames = waiting | {asked: frame}
@@ -116,7 +116,7 @@ class StationCommands:
         if not reply.accepted:
             return [asked.acknowledge(mavlink.MAV_RESULT_TEMPORARILY_REJECTED)]
         if asked in self._frames:
-            lately = {frame: then for frame, then in self._obeyed_ns.items() if local_ns - then < _OBEYED_NS}
+            lately = {frame: then for frame, then in self._obeyed_ns.items() if local_ns - then < DELIVERED_AGAIN_NS}
             self._obeyed_ns = lately | {self._frames.pop(asked): local_ns}
         if asked.number == _START:
             self._running, self._told = asked, None

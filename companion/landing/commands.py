@@ -171,8 +171,8 @@ def _refuse(why: Cause) -> CommandReply:
 def _missing_for_start(situation: Situation, obstacle: Cause | None) -> Cause | None:
     """Return the first thing that is missing for a start, None when nothing is.
 
-    An autopilot that has just started tells its receiver's height within a second: one that lacks it is an obstacle by
-    then.
+    The autopilot tells its receiver's height once a second. One that has lacked it for long is an obstacle; one that
+    lacks it as yet has just started.
     """
     view, drone = situation.autopilot, situation.drone
     missing = {

@@ -12,7 +12,9 @@ from collections import OrderedDict
 from link.mavlink.dialect import mavlink
 from link.mavlink.framing import message_id_at
 
-_REMEMBERED_NS = 30_000_000_000
+DELIVERED_AGAIN_NS = 30_000_000_000
+"""So late a network may deliver a datagram again."""
+
 _FRAMES_MAX = 20_000  # 30 s of 700 a second; some megabytes
 _BEATS_MISSED_NS = 3_000_000_000  # without one a heartbeat is taken that may be new: the link must not be lost for this
 
@@ -47,5 +49,5 @@ class RepeatedFrames:
 
     def _forget(self, t_ns: int) -> None:
         heard_ns = self._heard_ns
-        while heard_ns and (len(heard_ns) >= _FRAMES_MAX or t_ns - next(iter(heard_ns.values())) > _REMEMBERED_NS):
+        while heard_ns and (len(heard_ns) >= _FRAMES_MAX or t_ns - next(iter(heard_ns.values())) > DELIVERED_AGAIN_NS):
             heard_ns.popitem(last=False)

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from companion.autopilots.link import AutopilotLink
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.dialect import Message, mavlink
+from link.mavlink.sequence import NUMBERS
 from link.mavlink.session import MavlinkSession
 from link.mavlink.signing import Signing
 from link.messages import Command
@@ -130,7 +131,7 @@ def armed_flight() -> FaultFlight:
 
 def changed_by(name: str, flight: FaultFlight) -> frozenset[str]:
     """Return which facts an unsigned spoof changes, under the autopilot's own address, whatever its number is."""
-    by_number = (_changed_by_number(name, flight, number) for number in range(0, 256, _NUMBERS_APART))
+    by_number = (_changed_by_number(name, flight, number) for number in range(0, NUMBERS, _NUMBERS_APART))
     return frozenset[str]().union(*by_number)
 
 
