@@ -71,17 +71,15 @@ class PushWatch:
             self._felt, passed_s = [], 0.0
         felt_m_s2 = min(max(ahead_m_s2, -FORCE_MAX_M_S2), FORCE_MAX_M_S2)
         self._felt.append(_Felt(t_ns, newest.sum_m_s + felt_m_s2 * passed_s, yaw_rad))
+        _forget_old(self._felt)
 
     def take_velocity(self, t_ns: int, velocity_enu_m_s: Sequence[float], variance_m2_s2: float) -> None:
         """Take a velocity and the variance of one axis."""
         if self._told and not 0.0 < (t_ns - self._told[-1].t_ns) * 1e-9 <= _WINDOW_S:
             self._told = []
         self._told.append(Told(t_ns, float(velocity_enu_m_s[0]), float(velocity_enu_m_s[1]), variance_m2_s2))
+        _forget_old(self._told)
         self._close()
-        if self._felt:
-            oldest_ns = self._felt[-1].t_ns - round(_KEPT_S * 1e9)
-            self._felt = self._felt[bisect_right(self._felt, oldest_ns, key=itemgetter(0)) :]
-            self._told = [one for one in self._told if one.t_ns > oldest_ns]
 
     def _close(self) -> None:
         """Make a window of what has come, if it is long enough and forces were felt over it."""
@@ -115,6 +113,12 @@ class PushWatch:
     def _ahead_m_s(self, told: Told) -> float:
         yaw_rad = self._at(told.t_ns).yaw_rad
         return math.cos(yaw_rad) * told.east + math.sin(yaw_rad) * told.north
+
+
+def _forget_old(kept: list[_Felt] | list[Told]) -> None:
+    """Leave the last seconds, though the other of the two kinds never comes and no window is ever complete."""
+    oldest_ns = kept[-1].t_ns - round(_KEPT_S * 1e9)
+    del kept[: bisect_right(kept, oldest_ns, key=itemgetter(0))]
 
 
 def _doubt_of(windows: Sequence[_Window], *, is_level: bool) -> str | None:

@@ -1,6 +1,7 @@
 """An acceleration is believed where the speed does what it tells; axes turned about the vertical are told."""
 
 import math
+import pickle
 from collections.abc import Callable
 
 import numpy as np
@@ -123,3 +124,18 @@ def test_one_absurd_number_says_nothing_of_the_others(wrong: float, *, of_force:
             told_m_s = wrong if is_wrong and not of_force else speed_m_s
             unit.pushes.take_velocity(t_ns, (told_m_s, 0.0, 0.0), 0.01)
         assert unit.pushes.is_believed
+
+
+@pytest.mark.parametrize("kind", ["forces", "velocities"])
+def test_what_comes_alone_for_hours_is_not_kept(kind: str) -> None:
+    unit = UnitWatch()
+
+    def size_after(begins_s: int, ends_s: int) -> int:
+        for t_s in range(begins_s, ends_s):
+            if kind == "forces":
+                unit.pushes.take_force(t_s * 100_000_000, 1.0, YAW_RAD, is_level=True)
+            else:
+                unit.pushes.take_velocity(t_s * 100_000_000, (9.0, 0.0, 0.0), 0.01)
+        return len(pickle.dumps(unit))
+
+    assert size_after(100, 200) == size_after(200, 5000)
