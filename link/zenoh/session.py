@@ -28,6 +28,9 @@ INBOX_CAPACITY = 1024
 SENSOR_BYTES_MAX = 8192
 """Of one fix, velocity, IMU or sighting; a ROS odometry takes 0.7 kB and its names. What is larger no sensor sends."""
 
+_ALL = zenoh.QueryTarget.ALL
+_EACH = zenoh.ConsolidationMode.NONE  # else the library hands on one answer for each key: the last one's, or a liar's
+
 
 def taken(payload: zenoh.ZBytes, bytes_max: int | None) -> bytes:
     """Return the bytes of a payload, none of one that is larger than it may be."""
@@ -163,8 +166,8 @@ class ZenohSession:
         self._held.append(self._session.declare_queryable(key, receive))
 
     def query(self, key: str, payload: bytes, timeout_s: float) -> list[bytes]:
-        """Ask whoever serves `key` and return the answers, waiting for at most `timeout_s`; errors are left out."""
-        replies = self._session.get(key, payload=payload, timeout=timeout_s, target=zenoh.QueryTarget.ALL)
+        """Ask all who serve `key` and return their answers, waiting for at most `timeout_s`; errors are left out."""
+        replies = self._session.get(key, payload=payload, timeout=timeout_s, target=_ALL, consolidation=_EACH)
         return [reply.ok.payload.to_bytes() for reply in replies if reply.ok is not None]
 
     def ask(self, key: str, payload: bytes, timeout_s: float) -> Inbox:
@@ -176,7 +179,7 @@ class ZenohSession:
             if sample is not None and inbox.has_room(len(sample.payload)):
                 inbox.put(Sample(str(sample.key_expr), sample.payload.to_bytes(), self._receive_clock_ns()))
 
-        self._session.get(key, receive, payload=payload, timeout=timeout_s, target=zenoh.QueryTarget.ALL)
+        self._session.get(key, receive, payload=payload, timeout=timeout_s, target=_ALL, consolidation=_EACH)
         return inbox
 
     def _publisher(self, key: str, encoding: str) -> zenoh.Publisher:

@@ -58,7 +58,7 @@ class LiveSource:
         """Ask the companion and return its answer; one that is silent refuses."""
         answers = self._zenoh.query(self._keys.landing_command, json_messages.encode(Order(command=command)), _ANSWER_S)
         if len(answers) != 1:
-            who = f"{len(answers)} programs answer, and one of them is false" if answers else "no companion answers"
+            who = f"{len(answers)} programs answer: end all but one" if answers else "no companion answers"
             return CommandReply(accepted=False, reason=who)
         if not self._companions.alive:
             return CommandReply(accepted=False, reason="no companion runs, but somebody answers")

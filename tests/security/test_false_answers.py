@@ -1,12 +1,14 @@
 """Somebody who answers an operator in the companion's place, where no companion runs."""
 
+import time
+
 import pytest
 
 from link.errors import UserError
 from link.messages import Command, CommandReply, Order
 from link.payloads import json_messages
 from link.zenoh.keys import Keys
-from link.zenoh.session import ZenohOptions, open_session
+from link.zenoh.session import ZenohOptions, ZenohSession, open_session
 from scenarios.commands import operator as operator_command
 from scenarios.commands.operator import send_order
 from scenarios.processes.programs import free_tcp_endpoint
@@ -33,3 +35,26 @@ def test_who_accepts_a_command_where_no_companion_runs_is_not_believed(
         liar.declare_alive(KEYS.companion_alive("1"))
         assert send_order(Order(command=command), KEYS, ZenohOptions(connect=(endpoint,))) == ACCEPTED
         assert view.send(command) == ACCEPTED
+
+
+@pytest.mark.slow
+def test_who_answers_beside_the_companion_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(operator_command, "_SEEING_S", 0.3)
+    endpoint = free_tcp_endpoint()
+    refused = CommandReply(accepted=False, reason="nothing to abort in phase idle")
+    by_it = ZenohOptions(mode="client", connect=(endpoint,))
+    with open_session(ZenohOptions(listen=(endpoint,))) as companion, open_session(by_it) as liar:
+        companion.serve(KEYS.landing_command, lambda _: json_messages.encode(refused))
+        companion.declare_alive(KEYS.companion_alive("1"))
+        liar.serve(KEYS.landing_command, lambda _: json_messages.encode(ACCEPTED))
+        await_answers(companion, 2)
+        with pytest.raises(UserError, match=r"2 programs answer.*accepted; refused: nothing to abort"):
+            send_order(Order(command=Command.ABORT), KEYS, by_it)
+        assert LiveSource(companion, KEYS).send(Command.ABORT).reason == "2 programs answer: end all but one"
+
+
+def await_answers(session: ZenohSession, count: int) -> None:
+    """Wait until so many answer a command."""
+    until_s = time.monotonic() + 10.0
+    while len(session.query(KEYS.landing_command, b"", 5.0)) < count:
+        assert time.monotonic() < until_s

@@ -206,6 +206,29 @@ def test_ask_does_not_wait_for_the_answer(pair: tuple[ZenohSession, ZenohSession
     assert (answers[0].key, answers[0].payload) == ("ns/vehicle/pad", b"size!")
 
 
+def test_all_who_serve_a_key_are_heard(endpoint: str) -> None:
+    """The library hands on the last answer alone unless it is told otherwise."""
+    by_it = ZenohOptions(mode="client", connect=(endpoint,))
+    with (
+        open_session(ZenohOptions(listen=(endpoint,))) as vehicle,
+        open_session(by_it) as liar,
+        open_session(by_it) as companion,
+    ):
+        vehicle.serve("ns/vehicle/pad", lambda _: b"true")
+        liar.serve("ns/vehicle/pad", lambda _: b"false")
+        until(companion, lambda: len(companion.query("ns/vehicle/pad", b"", 5.0)) == 2)
+        assert sorted(companion.query("ns/vehicle/pad", b"", 5.0)) == [b"false", b"true"]
+        inbox = companion.ask("ns/vehicle/pad", b"", 5.0)
+        answers: list[bytes] = []
+
+        def are_answered() -> bool:
+            answers.extend(one.payload for one in inbox.take())
+            return len(answers) == 2
+
+        until(companion, are_answered)
+        assert sorted(answers) == [b"false", b"true"]
+
+
 def test_query_that_nobody_serves_has_no_answers(pair: tuple[ZenohSession, ZenohSession]) -> None:
     assert pair[0].query("ns/nobody/pad", b"", 5.0) == []
 

@@ -95,7 +95,7 @@ class Answering:
 @pytest.mark.parametrize(
     ("answers", "told"),
     [
-        ((ACCEPTED, ACCEPTED), "2 programs answer on .*one is false; they say: accepted; accepted"),
+        ((ACCEPTED, ACCEPTED), "2 programs answer on .*end all but one; they say: accepted; accepted"),
         (
             (json_messages.encode(CommandReply(accepted=False, reason="no")), ACCEPTED),
             "they say: accepted; refused: no",
