@@ -38,7 +38,7 @@ _LASTS_NS = 1_000_000_000  # what holds a landing up for less is not told
 _APART_NS = 5_000_000_000
 _WARNED_OF = frozenset({Phase.ABORT, Phase.HOLD, Phase.PILOT, Phase.RALLY})
 _BEGINNINGS = frozenset({Phase.TAKEOFF, Phase.ON_DECK})
-_TOLD_IN = frozenset({Phase.CHASE.value, Phase.ALIGN.value, Phase.DESCEND.value})
+_TOLD_IN = frozenset({Phase.WAITING.value, Phase.CHASE.value, Phase.ALIGN.value, Phase.DESCEND.value})
 
 
 def cut_text(text: str, severity: int = mavlink.MAV_SEVERITY_INFO) -> Message:

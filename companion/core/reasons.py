@@ -17,6 +17,14 @@ class Reason(Enum):
     WAITING_FOR_START = "waiting for a start"
     OPERATOR_STARTS = "commanded: start"
     AT_WAITING_POINT = "waiting for the vehicle"
+    VEHICLE_MAY_DEPART = "vehicle stands: the drone flies to it in {:.0f} s (chase.parked_wait_s)"
+    VEHICLE_STANDS_FAR = (
+        "vehicle stands {:.1f} m away, chase.passing_distance_m is {:g}: bring it nearer, or raise that"
+    )
+    VEHICLE_PASSES_FAR = (
+        "vehicle's course is {:.1f} m beside the drone, chase.passing_distance_m is {:g}: drive nearer, or raise that"
+    )
+    VEHICLE_IS_PAST = "vehicle drives away, {:.0f} m past the drone: let it come again"
     VEHICLE_PASSES = "vehicle passes at {:.1f} m/s"
     VEHICLE_STANDS = "vehicle stands"
     VEHICLE_DRIVES = "vehicle drives"

@@ -12,6 +12,7 @@ from companion.integrity.vehicle_data import unverified
 from companion.landing.carried_on import bound_carried
 from companion.landing.decisions.aborts import why_unplaced
 from companion.landing.decisions.contact_trial import trial_press
+from companion.landing.decisions.passing import why_not_chased
 from companion.landing.decisions.waiting import why_held_up
 from companion.landing.state.memory import Progress, StepMemory
 from companion.landing.state.step_data import StepInputs
@@ -137,7 +138,14 @@ def _cause(memory: StepMemory, situation: Situation, config: CompanionConfig) ->
     way = memory.sortie.way
     is_outrun = way is not None and way.frame is not way.station.frame
     outrun = Cause(Reason.STATION_OUTRUNS) if is_outrun and progress.phase is Phase.FOLLOW else None
-    return memory.sortie.warning or outrun or why_held_up(memory, situation, config) or progress.cause
+    return memory.sortie.warning or outrun or _awaited(memory, situation, config) or progress.cause
+
+
+def _awaited(memory: StepMemory, situation: Situation, config: CompanionConfig) -> Cause | None:
+    """Return what the drone waits for, before the chase or above the pad; None while it does not."""
+    if memory.progress.phase is Phase.WAITING:
+        return why_not_chased(memory.progress.held, situation, config)
+    return why_held_up(memory, situation, config)
 
 
 def _time_to_contact_s(relative: Approach, limits: FlightLimits, descent: DescentConfig) -> float:

@@ -1,9 +1,7 @@
 """Conditions that lead from one phase of an approach to the next, and what each phase waits for; pure."""
 
-import math
 from functools import cache
 
-from companion.autopilots.response import DRAG_PER_S
 from companion.config.companion import CompanionConfig
 from companion.config.planning import LandingStyle
 from companion.core.reasons import Cause, Reason
@@ -20,15 +18,14 @@ from companion.landing.decisions.conditions import (
     is_above_commitment,
     is_fix_old,
 )
+from companion.landing.decisions.passing import distance_m, is_too_low
 from companion.landing.state.memory import Held
-from companion.landing.steering.following_height import chase_floor_m
 from companion.situation.phases import Event, Phase
 from companion.situation.situation import Situation, vehicle_stands
 
 Decision = tuple[Event, Cause]
 """What happens, and why."""
 
-_LEFT_MIN_M_S2 = 1.0  # of the tilt limit beside drag: a drone that has less meets nothing
 _DESCENT = frozenset({Phase.DESCEND})
 _ALIGNMENT = frozenset({Phase.ALIGN})
 _WAITING = frozenset({Phase.WAITING})
@@ -52,58 +49,14 @@ def _is_far_off(s: Situation, c: CompanionConfig) -> bool:
     return s.approach.distance_m > 2.0 * c.descent.alignment.begin_distance_m
 
 
-def is_too_low(s: Situation, c: CompanionConfig) -> bool:
-    """Return whether the drone hovers so low that a chase would run into the vehicle's side."""
-    return s.approach is None or s.approach.height_m < chase_floor_m(c)
-
-
 def _stands_nearby(s: Situation, c: CompanionConfig) -> bool:
     if s.drone is None or s.pad is None or is_pad_unplaced(s, c) or is_fix_old(s, c) or is_too_low(s, c):
         return False
-    ahead = s.drone.position_enu_m[:2] - s.pad.position_enu_m[0, :2]
-    return vehicle_stands(s, c.chase) and math.hypot(*ahead.tolist()) < c.chase.passing_distance_m
+    return vehicle_stands(s, c.chase) and distance_m(s.drone, s.pad) < c.chase.passing_distance_m
 
 
 def _drives(s: Situation, c: CompanionConfig) -> bool:
     return s.pad is not None and not vehicle_stands(s, c.chase)
-
-
-def vehicle_passes(s: Situation, config: CompanionConfig) -> Decision | None:
-    """Return the event that starts the chase.
-
-    A moving vehicle is chased from the moment at which a drone that accelerates to its speed meets it. One that is past
-    is let go when it is farther away than the passing distance and would not be caught up with soon.
-    """
-    if s.drone is None or s.pad is None or is_fix_old(s, config) or is_too_low(s, config):
-        return None
-    velocity = s.pad.velocity_enu_m_s[0, :2]
-    ahead = s.drone.position_enu_m[:2] - s.pad.position_enu_m[0, :2]
-    speed_m_s = math.hypot(*velocity.tolist())
-    if vehicle_stands(s, config.chase):
-        return None
-    to_go_m = float(ahead @ velocity) / speed_m_s
-    beside_m = abs(float(ahead[0] * velocity[1] - ahead[1] * velocity[0])) / speed_m_s
-    lead_m = _lead_m(speed_m_s, s, config)
-    speed_max_m_s = config.limits.speed_max_m_s if s.limits is None else s.limits.speed_max_m_s
-    faster_m_s = min(speed_max_m_s - speed_m_s, config.chase.catch_up_speed_m_s)
-    past_m = max(config.chase.passing_distance_m, config.chase.catch_up_s * faster_m_s)
-    if beside_m > config.chase.passing_distance_m or not -past_m < to_go_m < lead_m:
-        return None
-    return Event.VEHICLE_PASSES, Cause(Reason.VEHICLE_PASSES, (speed_m_s,))
-
-
-def _lead_m(speed_m_s: float, s: Situation, config: CompanionConfig) -> float:
-    """Return how far before it passes a vehicle is that a drone meets which accelerates from rest to its speed v.
-
-    It takes v / a + a / j for that, and is half of the way behind. Acceleration and jerk are the same share of what
-    there is, a tilt limit less the drag at v included: a drone that is early waits for the vehicle, one that is late
-    has nothing left to catch up with.
-    """
-    limits = config.limits.flight_limits() if s.limits is None else s.limits
-    share = config.chase.start_fraction
-    left_m_s2 = limits.tilt_acceleration_m_s2 - DRAG_PER_S * speed_m_s
-    acceleration_m_s2 = share * max(min(limits.acceleration_max_m_s2, left_m_s2), _LEFT_MIN_M_S2)
-    return 0.5 * speed_m_s * (speed_m_s / acceleration_m_s2 + acceleration_m_s2 / (share * limits.jerk_max_m_s3))
 
 
 STRAYS = Condition(

@@ -24,8 +24,9 @@ from companion.landing.decisions.conditions import (
     is_below_pad,
     is_fix_old,
 )
-from companion.landing.decisions.entries import DRIVES, ENTRIES, Decision, vehicle_passes
+from companion.landing.decisions.entries import DRIVES, ENTRIES, Decision
 from companion.landing.decisions.feasibility import is_drone_taken, obstacle
+from companion.landing.decisions.passing import vehicle_passes
 from companion.landing.decisions.retries import end_climb
 from companion.landing.decisions.taken_control import find_taken_control
 from companion.landing.decisions.waiting import waited_s

@@ -8,12 +8,25 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import cumulative_trapezoid, trapezoid
 
-from companion.core.reasons import Reason
-from companion.landing.decisions.entries import update_held, vehicle_passes
+from companion.core.reasons import Cause, Reason
+from companion.landing.decisions.entries import update_held
+from companion.landing.decisions.passing import vehicle_passes, why_not_chased
+from companion.landing.outputs import landing_status
+from companion.landing.state.memory import Held, StepMemory
 from companion.situation.phases import Event, Phase
-from companion.situation.situation import vehicle_stands
+from companion.situation.situation import Situation, vehicle_stands
 from link.records import replace
-from tests.companion.facts import CONFIG, TICK_NS, changed, drone_at, first_decision, pad_at, situation
+from tests.companion.facts import (
+    CONFIG,
+    TICK_NS,
+    changed,
+    drone_at,
+    first_decision,
+    later,
+    pad_at,
+    progress,
+    situation,
+)
 
 HIGH_M = CONFIG.descent.alignment.height_m
 
@@ -157,3 +170,70 @@ def test_chase_starts_earlier_where_drag_leaves_little_of_the_tilt_limit() -> No
 
     assert lead_m(4.8) > lead_m(8.3) + 3.0
     assert lead_m(0.5) < 60.0 - 0.5
+
+
+def _why(facts: Situation, held: Held | None = None) -> Cause | None:
+    return why_not_chased(held or {}, facts, CONFIG)
+
+
+@given(
+    speed_m_s=st.floats(0.0, 24.0),
+    course_rad=st.floats(-math.pi, math.pi),
+    east_m=st.floats(-150.0, 150.0),
+    north_m=st.floats(-150.0, 150.0),
+)
+@settings(max_examples=200, deadline=None)
+def test_vehicle_is_chased_or_it_comes_yet_or_the_status_says_why_not(
+    speed_m_s: float, course_rad: float, east_m: float, north_m: float
+) -> None:
+    velocity_m_s = speed_m_s * np.array([math.cos(course_rad), math.sin(course_rad)])
+    pad = pad_at((float(velocity_m_s[0]), float(velocity_m_s[1]), 0.0))
+    drone = drone_at(HIGH_M, pad=pad)
+    there = replace(drone, position_enu_m=drone.position_enu_m + np.array([east_m, north_m, 0.0]))
+    facts = replace(situation(pad=pad), drone=there)
+    why, to_go_m_s = _why(facts), float(np.array([east_m, north_m]) @ velocity_m_s)
+    if vehicle_passes(facts, CONFIG) is not None:
+        assert why is None
+    else:
+        assert why is not None or to_go_m_s > 0.0
+
+
+def test_status_says_how_far_beside_a_vehicle_passes_that_is_let_go() -> None:
+    pad = pad_at((4.0, 3.0, 0.0))
+    drone = drone_at(HIGH_M, pad=pad)
+    across = np.array([-0.6, 0.8, 0.0])
+    beside = replace(drone, position_enu_m=drone.position_enu_m + 21.5 * across - 30.0 * np.array([0.8, 0.6, 0.0]))
+    cause = _why(replace(situation(pad=pad), drone=beside))
+    assert cause is not None
+    assert cause.reason is Reason.VEHICLE_PASSES_FAR
+    assert cause.values == pytest.approx((21.5, CONFIG.chase.passing_distance_m))
+
+
+def test_status_says_that_a_vehicle_stands_too_far_away_and_that_one_is_past() -> None:
+    far_m = CONFIG.chase.passing_distance_m + 0.1
+    far = _why(situation(3.0, far_m, pad=pad_at((0.0, 0.0, 0.0))))
+    assert far is not None
+    assert far.reason is Reason.VEHICLE_STANDS_FAR
+    assert far.values == pytest.approx((far_m, CONFIG.chase.passing_distance_m))
+    past = _why(situation(HIGH_M, -120.0, pad=pad_at((5.0, 0.0, 0.0))))
+    assert past is not None
+    assert past.reason is Reason.VEHICLE_IS_PAST
+    assert past.values == pytest.approx((120.0,))
+
+
+def test_status_counts_down_until_a_vehicle_that_stands_is_landed_on() -> None:
+    facts = situation(3.0, 2.0, pad=pad_at((0.0, 0.0, 0.0)))
+    held = update_held({}, Phase.WAITING, facts, CONFIG)
+    left_s = [cause.values[0] for ticks in (0, 100) if (cause := _why(later(facts, ticks * TICK_NS), held))]
+    assert left_s == pytest.approx([CONFIG.chase.parked_wait_s, CONFIG.chase.parked_wait_s - 2.0])
+
+
+def test_status_says_while_the_drone_waits_that_the_vehicle_has_fallen_silent() -> None:
+    silent = changed(situation(HIGH_M), fix_age_s=CONFIG.abort.fix_age_max_s + 0.1)
+    assert _why(silent) == Cause(Reason.VEHICLE_DATA_OLD)
+
+
+def test_drone_that_waits_says_in_its_status_why_it_does_not_chase() -> None:
+    far = situation(3.0, CONFIG.chase.passing_distance_m + 0.1, pad=pad_at((0.0, 0.0, 0.0)))
+    memory = StepMemory(progress=progress(Phase.WAITING))
+    assert landing_status(memory, far, CONFIG).reason_code == Reason.VEHICLE_STANDS_FAR.name
