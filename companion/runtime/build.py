@@ -24,13 +24,14 @@ from companion.vehicle.lever import tilted_lever, turned_lever, yaw_rate
 from companion.vehicle.shake import tilted_deck
 from link.mavlink.session import MavlinkSession
 from link.mavlink.signing import Signing
+from link.payloads import cdr
 from link.program.extras import require
 from link.recording.recorder import Recorder
 from link.zenoh.keys import Keys
 
 
 def warm_up(guidance: Guidance, config: CompanionConfig) -> None:
-    """Let everything that is compiled at its first use be compiled now: no step of a flight may wait for it.
+    """Let everything that is compiled or loaded at its first use be so now: no step of a flight may wait for it.
 
     The estimators see to their own kernels when they are made.
 
@@ -38,6 +39,7 @@ def warm_up(guidance: Guidance, config: CompanionConfig) -> None:
         guidance: law that is flown.
         config: all numbers.
     """
+    cdr.load()
     offset_s = np.arange(0.0, 4.01, 0.2)
     ahead = np.column_stack([30.0 + 8.0 * offset_s, 2.0 * offset_s, np.full_like(offset_s, 2.0)])
     zero = np.zeros(3)

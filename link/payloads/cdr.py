@@ -58,6 +58,13 @@ ROS_TYPES: dict[type[object], str] = {
 """The ROS 2 type of each message."""
 
 
+def load() -> None:
+    """Load what the first message of each type would load: 0.3 s that no step of a flight is to wait for."""
+    _conversions()
+    for ros_type in ROS_TYPES.values():
+        typestore().get_msgdef(ros_type)
+
+
 def encoding_of(message_type: type[Message]) -> str:
     """Return the Zenoh encoding of a message type, for instance `application/cdr;sensor_msgs/msg/NavSatFix`."""
     return f"application/cdr;{ROS_TYPES[message_type]}"

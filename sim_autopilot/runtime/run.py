@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 import structlog
 
+from link.payloads import cdr
 from link.transports.opening import open_transport
 from link.zenoh.keys import Keys
 from link.zenoh.session import ZenohOptions, open_session
@@ -48,6 +49,7 @@ def run(settings: SimAutopilotConfig, autopilot: AutopilotConfig, options: RunOp
         transports = [stack.enter_context(open_transport(device, is_patient=True)) for device in options.devices]
         zenoh = stack.enter_context(open_session(options.zenoh))
         AutopilotNode(autopilot, 0).step(None, np.zeros(3))  # loads the compiled kernels before time starts to count
+        cdr.load()
         node = AutopilotNode(autopilot, time.time_ns() // STEP_NS * STEP_NS)
         body = settings.vehicle
         vehicle = VehicleView(zenoh, options.keys, (body.length_m, body.width_m), body.roof_height_m)
