@@ -12,6 +12,7 @@ from link.errors import UserError
 from link.program.text import read_text
 from link.zenoh.exposure import check_exposure, openings_of
 from link.zenoh.options import DEFAULT_ENDPOINT, ZenohOptions
+from link.zenoh.unmet import TlsFiles, why_unmet
 
 _SOURCE_PLACE = re.compile(r"\s+at /\S+\.rs:\d+\.?")
 _CLIENT_CONNECT_TIMEOUT_MS = 5000
@@ -23,6 +24,7 @@ stall the loop that flies. Less than the half second after which autopilots call
 _TLS = "transport/link/tls/"
 _WAYS, _ENCRYPTED = ("listen", "connect"), ("tls/", "quic/", "wss/")
 _TLS_FILES = ("root_ca_certificate", *(f"{way}_{file}" for way in _WAYS for file in ("private_key", "certificate")))
+_SHOWN = ("connect_certificate", "connect_private_key")
 _JSON5_PLACE = re.compile(r"-->\s*(\d+):(\d+)")
 
 _BRACKETS_MAX = 100
@@ -184,10 +186,20 @@ def _open_failure(options: ZenohOptions, config: zenoh.Config, text: str) -> str
     if "Address already in use" in text:
         return f"--listen {endpoints}: the port is in use, stop the other program or choose another port"
     if _get(config, "mode") == "client":
-        return (
-            f"--connect {', '.join(_endpoints(config, 'connect/endpoints'))}: no router answers there ({_plain(text)})"
-        )
+        return _unmet(config, text)
     return f"cannot open the Zenoh session (--listen {endpoints}): {_plain(text)}"
+
+
+def _unmet(config: zenoh.Config, text: str) -> str:
+    to = _endpoints(config, "connect/endpoints")
+    own = {name: _get(config, _TLS + name) for name in ("root_ca_certificate", *_SHOWN)}
+    authority, certificate, key = (str(one) if one else None for one in own.values())
+    verifies_name = _get(config, f"{_TLS}verify_name_on_connect") is not False
+    files = TlsFiles(authority=authority, certificate=certificate, key=key, verifies_name=verifies_name)
+    seen = [f"{endpoint}: {why}" for endpoint in to if (why := why_unmet(endpoint, files)) is not None]
+    if seen:
+        return f"--connect {'; '.join(seen)}"
+    return f"--connect {', '.join(to)}: no router answers there ({_plain(text)})"
 
 
 def _plain(text: str) -> str:
