@@ -174,6 +174,10 @@ class CommandReply(Struct, frozen=True, kw_only=True):
     accepted: bool
     reason: str
 
+    def __str__(self) -> str:
+        """Return it in words."""
+        return "accepted" if self.accepted else f"refused: {self.reason}"
+
 
 class ContactForecast(Struct, frozen=True, kw_only=True):
     """How a descent that goes on now ends: probabilities of the contact that it leads to.

@@ -165,7 +165,7 @@ def command_command(
     from scenarios.commands.operator import order_of, send_order
 
     reply = send_order(order_of(command, offset, frame), Keys(namespace, "vehicle", drone), endpoints.options())
-    told = "accepted" if reply.accepted else f"refused: {printable(reply.reason)}"
+    told = printable(str(reply))
     sys.stdout.write((json.dumps({"accepted": reply.accepted, "reason": reply.reason}) if as_json else told) + "\n")
     return 0 if reply.accepted else 1
 

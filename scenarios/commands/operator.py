@@ -89,6 +89,6 @@ def _only(answers: list[bytes], keys: Keys) -> CommandReply:
     except PayloadError as error:
         raise UserError(f"what answers on {keys.landing_command} is no companion: {error}") from error
     if len(replies) > 1:
-        said = "; ".join(sorted("accepted" if one.accepted else f"refused: {one.reason}" for one in replies))
+        said = "; ".join(sorted(map(str, replies)))
         raise UserError(f"{len(replies)} programs answer on {keys.landing_command}: end all but one; they say: {said}")
     return replies[0]

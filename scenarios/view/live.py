@@ -57,15 +57,18 @@ class LiveSource:
     def send(self, command: Command) -> CommandReply:
         """Ask the companion and return its answer; one that is silent refuses."""
         answers = self._zenoh.query(self._keys.landing_command, json_messages.encode(Order(command=command)), _ANSWER_S)
-        if len(answers) != 1:
-            who = f"{len(answers)} programs answer: end all but one" if answers else "no companion answers"
-            return CommandReply(accepted=False, reason=who)
+        if not answers:
+            return CommandReply(accepted=False, reason="no companion answers")
         if not self._companions.alive:
             return CommandReply(accepted=False, reason="no companion runs, but somebody answers")
         try:
-            return json_messages.decode(CommandReply, answers[0])
+            replies = [json_messages.decode(CommandReply, answer) for answer in answers]
         except PayloadError as error:
             return CommandReply(accepted=False, reason=f"its answer cannot be read: {error}")
+        if len(replies) > 1:
+            said = "; ".join(sorted(map(str, replies)))
+            return CommandReply(accepted=False, reason=f"{len(replies)} programs answer: end all but one ({said})")
+        return replies[0]
 
     def _take(self, topic: str, payload: bytes) -> None:
         try:

@@ -58,7 +58,7 @@ class Panel:
 
         def ask(command: Command) -> None:
             answer = send(command)
-            told = "accepted" if answer.accepted else f"refused: {answer.reason}"
+            told = str(answer)
             reply.content = _small(f"{command.value}: {told}")
 
         def confirm(_: object) -> None:
