@@ -68,5 +68,8 @@ def _describe_heard(session: MavlinkSession) -> str:
         )
     if causes:
         return "; ".join(causes)
+    if codec.bytes_received and not codec.messages_received:
+        look = "check the baud rate, and that this port of the autopilot sends MAVLink"
+        return f"{codec.bytes_received} bytes received, and no message in them: {look}"
     came = f"{codec.bytes_received} bytes received, {codec.messages_received} messages, none of them its heartbeat"
     return f"{came if codec.bytes_received else 'nothing was received'}; check --mavlink and the autopilot's port"

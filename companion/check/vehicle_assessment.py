@@ -64,7 +64,11 @@ def _brakes(seen: VehicleFacts) -> list[Finding]:
 def _pad(seen: VehicleFacts, config: CompanionConfig) -> Finding:
     if not seen.describes_pad:
         refused = "not described" if seen.pad_refused_why is None else f"refused: {seen.pad_refused_why}"
-        advice = "let the vehicle answer for its pad" if seen.pad_refused_why is None else "mend its description"
+        advice = (
+            "let the vehicle answer for its pad"
+            if seen.pad_refused_why is None
+            else "let one program answer, with a description that fits"
+        )
         return make_finding("vehicle pad", refused, Level.FAIL, advice)
     if seen.pad_width_m < pad_width_min_m(config):
         advice = f"use one of {pad_width_min_m(config):.2f} m and more"

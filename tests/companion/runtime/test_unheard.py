@@ -61,5 +61,11 @@ def test_without_a_key_the_device_and_the_port_are_named() -> None:
     assert "bytes received, 1 messages, none of them its heartbeat; check --mavlink" in _said(session)
 
 
+def test_bytes_without_a_message_are_blamed_on_the_baud_rate() -> None:
+    session = MavlinkSession(1, target_system_id=1)
+    session.receive(bytes(range(0, 250, 7)) * 20, START_NS)
+    assert "720 bytes received, and no message in them: check the baud rate" in _said(session)
+
+
 def test_autopilot_that_is_heard_passes() -> None:
     check_autopilot(_heard(_signed(KEY)), DEVICE, 60.0)
