@@ -21,6 +21,7 @@ class Receiver(Struct, frozen=True, kw_only=True):
 
     has_fix: bool | None = None  # of three dimensions; None where nobody tells, or there is no receiver
     is_fixed: bool = False  # its carrier phases, so that it is right to centimetres
+    fix_told: int | None = None  # GPS_FIX_TYPE of the last report; what it says of both counts when it is told again
     knows_geoid: bool = False  # without it the height of the frame's origin is one above the sea
 
 

@@ -66,15 +66,25 @@ def with_fix(receiver: Receiver, message: Message) -> Receiver:
     """Return what the receiver tells after a GPS_RAW_INT.
 
     "No GPS" before anything else is an autopilot's word for having no receiver: something else places that drone.
-    Later it is a receiver that has fallen silent.
+    Later it is a receiver that has fallen silent. A single report that says otherwise may be anybody's, or of one bad
+    epoch, over which the autopilot's estimate goes on.
     """
-    if receiver.has_fix is None and message.fix_type == mavlink.GPS_FIX_TYPE_NO_GPS:
+    told: int = message.fix_type
+    if receiver.has_fix is None and told == mavlink.GPS_FIX_TYPE_NO_GPS:
         return receiver
+    has_fix, is_fixed = _kind_of_fix(told)
+    had_fix, was_fixed = _kind_of_fix(told if receiver.fix_told is None else receiver.fix_told)
     return replace(
         receiver,
-        has_fix=message.fix_type >= mavlink.GPS_FIX_TYPE_3D_FIX,
-        is_fixed=message.fix_type == mavlink.GPS_FIX_TYPE_RTK_FIXED,
+        has_fix=has_fix if has_fix is had_fix else receiver.has_fix,
+        is_fixed=is_fixed if is_fixed is was_fixed else receiver.is_fixed,
+        fix_told=told,
     )
+
+
+def _kind_of_fix(told: int) -> tuple[bool, bool]:
+    """Return whether a GPS_FIX_TYPE is a fix of three dimensions, and whether its carrier phases are fixed."""
+    return told >= mavlink.GPS_FIX_TYPE_3D_FIX, told == mavlink.GPS_FIX_TYPE_RTK_FIXED
 
 
 _MOVED_RAD = 1e-8  # 6 cm; the field's resolution is 1e-7 degrees, 1 cm

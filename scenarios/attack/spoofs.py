@@ -116,7 +116,7 @@ UNSIGNED: Mapping[str, frozenset[str]] = {
     "battery": frozenset(),
     "pilot's switch": frozenset(),
     "geoid": frozenset(),
-    "no fix": frozenset({"has_fix"}),
+    "no fix": frozenset(),
 }
 """What each changes under the autopilot's own address: docs/safety.md, "Who may give orders"."""
 

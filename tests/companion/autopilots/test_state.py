@@ -287,7 +287,23 @@ def test_later_geoid_height_counts_when_it_is_told_again() -> None:
 def test_receiver_tells_whether_its_phases_are_fixed(fix: int, *, is_fixed: bool) -> None:
     state = _hear(_receiver(fix, 410_000, 457_300))
     assert state.view.receiver.is_fixed is is_fixed
-    assert not _hear(_receiver(5, 410_000, 457_300), state=state).view.receiver.is_fixed
+
+
+@pytest.mark.parametrize(
+    ("fixes", "is_fixed"),
+    [
+        ((6, 5), True),  # one bad epoch
+        ((6, 5, 6, 5), True),
+        ((6, 5, 5), False),
+        ((6, 5, 1), False),
+        ((5, 6), False),
+        ((5, 6, 5, 6), False),
+        ((5, 6, 6), True),
+    ],
+)
+def test_whether_phases_are_fixed_counts_when_it_is_told_again(fixes: tuple[int, ...], *, is_fixed: bool) -> None:
+    state = _hear(*(_receiver(fix, 410_000, 457_300) for fix in fixes))
+    assert state.view.receiver.is_fixed is is_fixed
 
 
 @pytest.mark.parametrize(
@@ -300,9 +316,14 @@ def test_receiver_tells_whether_its_phases_are_fixed(fix: int, *, is_fixed: bool
         ((2,), False),
         ((3,), True),
         ((6,), True),
-        ((3, 0), False),  # has fallen silent
+        ((3, 0), True),  # one bad epoch
+        ((3, 1, 3, 1), True),
+        ((3, 0, 0), False),  # has fallen silent
+        ((3, 0, 2), False),
         ((1, 0), False),
-        ((0, 3, 1), False),
+        ((0, 3, 1), True),
+        ((1, 3), False),
+        ((1, 3, 6), True),
     ],
 )
 def test_receiver_tells_whether_it_has_a_fix(fixes: tuple[int, ...], *, has_fix: bool | None) -> None:
