@@ -126,6 +126,7 @@ def _situation(memory: StepMemory, pad: PadPath | None, inputs: StepInputs, syst
             fix_std_m=vehicle.phases.vehicle_std_m,
             rejected_share=vehicle.contradictions.rejected_share,
             rejected=vehicle.contradictions.rejected,
+            is_pad_doubted=inputs.vehicle.is_pad_doubted,
             are_sightings_mixed=vehicle.sightings.are_mixed,
             has_unplaced_sightings=inputs.vehicle.has_unplaced_sightings,
             has_pad_stepped=vehicle.sightings.has_stepped,

@@ -140,6 +140,10 @@ class Reason(Enum):
         "SYSID_THISMAV, MAV_SYSID), and see --system-id"
     )
     VEHICLE_TAKEN = "{} lands on this vehicle, or stands on it: wait until it has gone"
+    PAD_CHANGED = (
+        "the vehicle describes another pad than the one flown to: see which is right, change the mode or land, and "
+        "start again"
+    )
     STAMPS_LATE = (
         "vehicle's fixes come {:.2f} s after their stamps, abort.fix_age_max_s is {:g}: set its clock by GNSS or NTP, "
         "or use a faster link"

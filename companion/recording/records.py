@@ -20,6 +20,7 @@ class InputKind(IntEnum):
     LEAVE = 6  # no data
     DATAGRAM = 7  # data: whole frames of the link
     RIVAL = 8  # data: a drone's name, then 1 for this one or 0; none where there is no rival
+    PAD_DOUBTED = 9  # no data
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -14,10 +14,11 @@ from companion.runtime.losses import Losses
 from companion.runtime.node import CompanionNode
 from companion.runtime.options import Links, LoopOptions, Timings
 from companion.runtime.outbox import outbox
+from companion.runtime.pad_watch import PadWatch
 from companion.runtime.recorded_node import RecordingNode
 from companion.runtime.sent_frames import SentFrames
 from companion.runtime.start_and_handover import OwnStart, hand_over
-from companion.situation.phases import FLYING_PHASES, Phase
+from companion.situation.phases import Phase
 from link.errors import UserError
 from link.mavlink.pinned_peer import PinnedPeer
 from link.mavlink.tlog import TlogFrames, TlogSink
@@ -27,7 +28,6 @@ from link.program.clock import Clock, ClockTick, SimulatedClock, SystemClock, sp
 from link.program.service import Service
 from link.recording.log import Log
 from link.recording.recorder import BackgroundRecorder, Recorder
-from link.zenoh.pad_question import PadQuestion
 from link.zenoh.session import SENSOR_BYTES_MAX
 
 _WAIT_MAX_S = 0.005  # for bytes; Zenoh samples wait no longer than this
@@ -86,8 +86,7 @@ class _Loop:
         self._start = OwnStart(wanted=options.start)
         self._is_silent = node.system.config.silent_vehicle is not None
         self._fix_seen = self._is_silent  # of a vehicle that tells nothing no fix is awaited
-        self._was_alive = False
-        self._pad_question = PadQuestion(zenoh, keys.pad)
+        self._pad_watch = PadWatch(zenoh, keys.pad)
         self._link_was_up: bool | None = None
         self._strangers_told = False
         self._losses = Losses(node, self._sent, zenoh, log)
@@ -216,22 +215,13 @@ class _Loop:
         self._link_was_up = is_up if is_up or self._link_was_up is not None else None
 
     def _ask_for_pad(self) -> None:
-        """Ask the vehicle for its pad until it has answered, and again when it has come back: it may be another one."""
+        """Ask the vehicle for its pad, and say why an answer is refused."""
         if self._is_silent:
             return
-        question, alive = self._pad_question, self._alive.alive
-        if alive and not self._was_alive:
-            question.ask_anew()
-        self._was_alive = alive
-        why, bad = question.refused_why, question.bad_answers
-        may_change = self._node.phase not in FLYING_PHASES
-        pad = question.poll(time.monotonic(), asks=alive or self._fix_seen, may_change=may_change)
-        for _ in range(question.bad_answers - bad):
-            self._node.vehicle.refuse("pad", "refused", question.refused_why or "")
-        if question.refused_why != why:
-            self._log.warning("the vehicle's description of its pad is refused", why=question.refused_why)
-        if pad is not None:
-            self._node.receive_pad(pad)
+        alive, seen = self._alive.alive, self._fix_seen
+        why = self._pad_watch.poll(self._node, time.monotonic(), alive=alive, fix_seen=seen)
+        if why is not None:
+            self._log.warning("the vehicle's description of its pad is refused", why=why)
 
     def _check_time_out(self) -> None:
         """Say what is missing when nothing has come within the time-out; not once a flight has begun."""
@@ -240,4 +230,6 @@ class _Loop:
             return
         timeout_s = self._options.timeout_s
         check_autopilot(self._node.autopilot.session, self._options.device, timeout_s)
-        self._start.check_vehicle(self._keys, timeout_s, fix_seen=self._fix_seen, pad_known=self._node.pad_known)
+        self._start.check_vehicle(
+            self._keys, timeout_s, fix_seen=self._fix_seen, pad_known=self._node.vehicle.knows_pad
+        )

@@ -75,11 +75,6 @@ class CompanionNode:
         """Of the landing."""
         return self.memory.progress.phase
 
-    @property
-    def pad_known(self) -> bool:
-        """Whether the vehicle has described its pad."""
-        return self.vehicle.pad is not None
-
     def vehicle_estimate(self, t_ns: int) -> VehicleEstimate | None:
         """Return the vehicle at `t_ns` (UTC) as the last step knew it, None before the first fix."""
         return self.system.estimator.estimate(self.memory.vehicle.estimator, t_ns)
@@ -118,6 +113,10 @@ class CompanionNode:
             if pad.is_afloat is not was_afloat:  # what has been learnt of a ship as of a car is wrong, and believed
                 self.memory = replace(self.memory, vehicle=replace(self.memory.vehicle, estimator=None))
             self.system = replace(self.system, estimator=estimator)
+
+    def doubt_pad(self) -> None:
+        """Take that the vehicle describes another pad now; it is received once nothing is flown."""
+        self.vehicle.is_pad_doubted = True
 
     def is_ready_to_start(self) -> bool:
         """Return whether a start that nobody commands may be made: whoever else flies the drone would be known."""

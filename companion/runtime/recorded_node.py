@@ -101,6 +101,12 @@ class RecordingNode(CompanionNode):
         self._record(InputKind.PAD, json_payloads.encode(pad))
         super().receive_pad(pad)
 
+    def doubt_pad(self) -> None:
+        """Take that the vehicle describes another pad now; only its change is recorded."""
+        if not self.vehicle.is_pad_doubted:
+            self._record(InputKind.PAD_DOUBTED, b"")
+        super().doubt_pad()
+
     def receive_liveliness(self, *, alive: bool) -> None:
         """Take the state of the vehicle's liveliness token; only its changes are recorded."""
         if alive is not self._recorded_alive:

@@ -41,7 +41,7 @@ class OwnStart:
             return True
         self.pending = self.pending and node.phase is Phase.IDLE
         is_free = node.is_ready_to_start() and not node.commands.waits
-        if self.pending and fix_seen and node.pad_known and is_free:
+        if self.pending and fix_seen and node.vehicle.knows_pad and is_free:
             node.request(Command.START)
         return False
 

@@ -108,11 +108,13 @@ class VehicleLink:
     Attributes:
         refusals: what was refused, and why.
         pad: as the vehicle describes it, None before.
+        is_pad_doubted: it describes another one now, until that one, or the one before again, is received.
         alive: the state of its liveliness token, None if it never had one.
     """
 
     def __init__(self, keys: Keys, clock: StepClock, silent: SilentVehicleConfig | None) -> None:
         self.pad: PadGeometry | None = None if silent is None else silent.pad
+        self.is_pad_doubted = False
         self.alive: bool | None = None
         self.tells_nothing = silent is not None
         self.refusals = Refusals()
@@ -125,6 +127,11 @@ class VehicleLink:
         self._received: list[tuple[str, list[Measurement]]] = []  # on which key, since the last step
         self._second_ns = 0  # in which samples are counted, when it began
         self._heard: Counter[str] = Counter()
+
+    @property
+    def knows_pad(self) -> bool:
+        """Whether the vehicle has described its pad."""
+        return self.pad is not None
 
     def receive(self, key: str, payload: bytes, state: AutopilotState) -> None:
         """Take a sample; what cannot be decoded or is absurd is counted and dropped.
@@ -171,7 +178,7 @@ class VehicleLink:
         if not is_possible(pad):
             self.refuse("pad", "impossible", "no vehicle has such a pad")
             return False
-        self.pad = pad
+        self.pad, self.is_pad_doubted = pad, False
         return True
 
     def receive_liveliness(self, *, alive: bool) -> None:
@@ -219,6 +226,7 @@ class VehicleLink:
             has_doubted_unit=has_doubted,
             is_alive=self.alive,
             pad=self.pad,
+            is_pad_doubted=self.is_pad_doubted,
             has_unplaced_sightings=self._are_sightings_unplaced(),
         )
 

@@ -63,6 +63,7 @@ class VehicleNews(Struct, frozen=True, kw_only=True):
         speed_std_m_s: of its horizontal velocity; infinite while that is not known.
         rejected_share: of its measurements of the last seconds, 0 to 1.
         rejected: the quantity that this is the share of; None of all together.
+        is_pad_doubted: it describes another pad now than the one that is flown to.
         are_sightings_mixed: what the drone sees of the pad contradicts itself.
         has_unplaced_sightings: what lately came of its pad is stamped when nobody knew where the drone was.
         has_pad_stepped: it is seen elsewhere on the vehicle than where it was confirmed.
@@ -78,6 +79,7 @@ class VehicleNews(Struct, frozen=True, kw_only=True):
     speed_std_m_s: float = math.inf
     rejected_share: float = 0.0
     rejected: Quantity | None = None
+    is_pad_doubted: bool = False
     are_sightings_mixed: bool = False
     has_unplaced_sightings: bool = False
     has_pad_stepped: bool = False

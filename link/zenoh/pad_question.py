@@ -32,6 +32,7 @@ class PadQuestion:
     Attributes:
         pad: that came last, None before one has come.
         is_answered: whether a pad has come, since it was last asked again.
+        is_contradicted: the newest answers have another pad instead of `pad`, which is not believed yet.
         bad_answers: that were no description of a pad, or not to be believed.
         refused_why: what was wrong with the last one of them, None while there was none.
     """
@@ -44,6 +45,7 @@ class PadQuestion:
         self.pad: PadGeometry | None = None
         self._asked_s = float("-inf")
         self.is_answered = False
+        self.is_contradicted = False
         self.bad_answers = 0
         self.refused_why: str | None = None
 
@@ -78,10 +80,11 @@ class PadQuestion:
         """Return what all answers say, None when they do not agree or say what is not to be believed."""
         first, *others = self._gathered
         self._gathered = []
+        self.is_contradicted = not may_change and self.pad is not None and self.pad not in {first, *others}
         if any(other != first for other in others):
             self._refuse(f"{len(others) + 1} answers that differ: two answer on {self._key}")
             return None
-        if not may_change and self.pad not in {None, first}:
+        if self.is_contradicted:
             self._refuse(_CHANGED)
             return None
         self.pad, self.is_answered = first, True

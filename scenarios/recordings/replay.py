@@ -168,6 +168,8 @@ def give(node: CompanionNode, record: InputRecord) -> None:
             node.receive_sample(record.key, record.data)
         case InputKind.PAD:
             node.receive_pad(json_messages.decode(PadGeometry, record.data))
+        case InputKind.PAD_DOUBTED:
+            node.doubt_pad()
         case InputKind.ALIVE:
             node.receive_liveliness(alive=bool(record.data[0]))
         case InputKind.RIVAL:

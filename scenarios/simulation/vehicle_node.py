@@ -73,9 +73,9 @@ class VehicleNode:
         self.is_silent = scenario.is_silent
         self._truth_due_ns = 0
 
-    def set_sensors(self, sensors: SensorsConfig) -> None:
-        """Let the sensors err otherwise from now on; what of them is random restarts."""
-        self._sensors = self._suite(sensors)
+    def set_sensors(self, sensors: SensorsConfig, mounting: Mounting | None = None) -> None:
+        """Let the sensors err otherwise, or sit elsewhere, from now on; what of them is random restarts."""
+        self._sensors = self._suite(sensors) if mounting is None else self._suite(sensors, mounting=mounting)
 
     def set_clock(self, ahead_s: float) -> None:
         """Set the vehicle's clock ahead by `ahead_s`."""

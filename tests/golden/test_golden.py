@@ -123,6 +123,7 @@ ALIKE = {
     Reason.ALIGN_TOO_LONG: Reason.DESCENT_TOO_LONG,
     Reason.OPERATOR_HOLDS: Reason.OPERATOR_ABORTS,
     Reason.VEHICLE_TAKEN: Reason.OPERATOR_ABORTS,
+    Reason.PAD_CHANGED: Reason.OPERATOR_ABORTS,
 }
 """Reasons of one kind: the second of them is flown."""
 

@@ -73,7 +73,19 @@ def test_pad_that_is_flown_to_is_not_replaced_until_the_flight_is_over() -> None
     assert believed(question, vehicles, 5.0, may_change=False) == []
     assert question.refused_why is not None
     assert "while it is flown to" in question.refused_why
+    assert question.is_contradicted
     assert believed(question, vehicles, 2.0) == [FALSE]
+    assert not question.is_contradicted
+
+
+def test_pad_that_is_flown_to_is_not_contradicted_by_a_stranger_beside_the_vehicle() -> None:
+    vehicles = Vehicles((0.01, PAD))
+    question = PadQuestion(vehicles, KEY)
+    assert believed(question, vehicles, 2.0) == [PAD]
+    vehicles.answers = [(0.01, FALSE), (0.2, PAD)]
+    question.ask_anew()
+    assert believed(question, vehicles, 3.0, may_change=False) == []
+    assert not question.is_contradicted
 
 
 def test_pad_that_is_described_in_flight_for_the_first_time_is_believed() -> None:

@@ -19,6 +19,7 @@ from companion.landing.decisions.conditions import (
     has_lost_heading,
     is_fix_old,
     is_heading_to_be_shown,
+    is_pad_doubted,
     is_sunk,
     is_vehicle_taken,
     tell_taken,
@@ -162,6 +163,7 @@ ABORTS = (
         cause=tell_unseen,
     ),
     Condition(reason=Reason.VEHICLE_LINK_LOST, phases=LANDING_PHASES, is_true=is_token_lost),
+    Condition(reason=Reason.PAD_CHANGED, phases=LANDING_PHASES, is_true=is_pad_doubted),
     Condition(
         reason=Reason.VEHICLE_CLOCK_AHEAD,
         phases=LANDING_PHASES,

@@ -107,6 +107,11 @@ def tell_taken(s: Situation, _: CompanionConfig) -> Cause:
     return Cause(Reason.VEHICLE_TAKEN, ("nobody" if s.rival is None else s.rival.drone,))
 
 
+def is_pad_doubted(s: Situation, _: CompanionConfig) -> bool:
+    """Return whether the vehicle describes another pad than the one that is flown to: one of them is beside it."""
+    return s.vehicle.is_pad_doubted
+
+
 def is_drone_unknown(s: Situation, _: CompanionConfig) -> bool:
     """Return whether nobody knows where the drone is."""
     return s.drone is None

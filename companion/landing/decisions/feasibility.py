@@ -16,6 +16,7 @@ from companion.landing.decisions.conditions import (
     Condition,
     first_cause,
     is_fix_old,
+    is_pad_doubted,
     is_vehicle_taken,
     tell_taken,
 )
@@ -223,6 +224,7 @@ OBSTACLES = (
     ),
     *(replace(silence, phases=frozenset({Phase.WAITING})) for silence in AUTOPILOT_SILENT),
     EMPTY,
+    Condition(reason=Reason.PAD_CHANGED, phases=_BEFORE_ANY_CHASE, is_true=is_pad_doubted),
     Condition(reason=Reason.PAD_TOO_SMALL, phases=_BEFORE_ANY_CHASE, is_true=_is_too_narrow, cause=_too_narrow),
     Condition(
         reason=Reason.ROAD_ELSEWHERE,

@@ -46,6 +46,7 @@ class VehicleInputs(Struct, frozen=True, kw_only=True, eq=False):
         has_doubted_unit: something that its inertial unit tells has since then been found to be wrong.
         is_alive: its liveliness token is there; None when it never showed one.
         pad: its own description of its pad.
+        is_pad_doubted: it describes another one now, as one that was restarted with another file.
         has_unplaced_sightings: all that came lately are stamped when nobody knew where the drone was.
     """
 
@@ -54,6 +55,7 @@ class VehicleInputs(Struct, frozen=True, kw_only=True, eq=False):
     has_doubted_unit: bool = False
     is_alive: bool | None = None
     pad: PadGeometry | None = None
+    is_pad_doubted: bool = False
     has_unplaced_sightings: bool = False
 
 

@@ -178,7 +178,7 @@ def test_pad_that_no_vehicle_has_is_counted_and_not_taken() -> None:
     setup = Setup()
     for lever in ((51.0, 0.0, 0.0), (0.0, math.nan, 0.0)):
         setup.node.receive_pad(PadGeometry(size_m=(1.0, 1.0), height_m=1.5, antenna_to_pad_m=lever))
-    assert not setup.node.pad_known
+    assert not setup.node.vehicle.knows_pad
     assert setup.node.bad_payloads == 2
 
 

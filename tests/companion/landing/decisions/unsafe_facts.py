@@ -73,6 +73,7 @@ UNSAFE: dict[Reason, Situation] = {
     Reason.VEHICLE_CONTRADICTS_ITSELF: changed(situation(), rejected_share=CONFIG.integrity.rejected_share_max + 0.01),
     Reason.SEEN_ELSEWHERE: situation(pad=replace(pad_at(), frame_offset=FrameOffset(distance_m=1.0, std_m=0.01))),
     Reason.VEHICLE_TAKEN: changed(situation(), rival=Rival(drone="drone2", is_this_drone=False)),
+    Reason.PAD_CHANGED: changed(situation(), is_pad_doubted=True),
     Reason.SIGHTINGS_DISAGREE: changed(situation(), are_sightings_mixed=True),
     Reason.SIGHTINGS_IMPOSSIBLE: situation(
         pad=replace(
