@@ -170,6 +170,7 @@ class Reason(Enum):
     ROOF_TOO_HIGH = "waiting {:.1f} m above the pad, {:.1f} m are needed: {}"
 
     # A command is refused.
+    MOTORS_STOPPING = "the motors are being switched off on the ground: start again once they stand"
     NOTHING_TO_DO = "nothing to {} in phase {}"
     GUIDES_ONLY = "guides the autopilot's own precision landing, and flies nothing: choose that mode"
     NO_AUTOPILOT = "no autopilot is connected"

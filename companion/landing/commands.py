@@ -110,6 +110,7 @@ def answer(
     *,
     called_home: Cause | None = None,
     is_arming: bool = False,
+    is_disarming: bool = False,
 ) -> tuple[Event | None, CommandReply]:
     """Return the event that the order amounts to, None when it changes no phase, and the reply.
 
@@ -121,6 +122,7 @@ def answer(
         obstacle: why no landing can be done, None when one can.
         called_home: that the battery lasts just for the way home, None while it lasts longer.
         is_arming: the motors may turn although nothing has told so yet.
+        is_disarming: they are ordered to stop, and nothing has told so yet.
     """
     event = _event_of(order, phase, situation, config, may_turn=situation.autopilot.armed or is_arming)
     is_start = order.command in (Command.START, Command.START_ANYWAY)
@@ -134,7 +136,7 @@ def answer(
         missing = _missing_for_start(situation, obstacle)
     if is_start:
         riding = tell_riding(situation, config) if rides_along(situation, config) else None
-        missing = missing or riding or obstacle
+        missing = (Cause(Reason.MOTORS_STOPPING) if is_disarming else None) or missing or riding or obstacle
     if event in (Event.FOLLOW, Event.RETURN) and not _flies(situation):
         missing = Cause(Reason.NOT_FLOWN, (order.command.value,))
     if event in SORTIE_EVENTS:
@@ -150,15 +152,15 @@ def _event_of(order: Order, phase: Phase, s: Situation, config: CompanionConfig,
     if phase in (Phase.TAKEOFF, Phase.ON_DECK, Phase.LIFT_OFF) and event in (Event.ABORT, Event.HOLD) and stands:
         return Event.CALLED_OFF  # on the ground there is nothing to hold
     if phase is Phase.HOLD and is_start and not _flies(s):
-        return Event.START_AGAIN  # called off before the autopilot gave control: it has to be asked for again
+        return Event.START_AGAIN  # broken off before it has left the ground: control and motors are asked for again
     if phase is Phase.FOLLOW and is_start and not is_above_vehicle(s, config):
         return Event.RETURN
     return event
 
 
 def _flies(s: Situation) -> bool:
-    """Return whether the drone has its motors on and follows the companion."""
-    return s.autopilot.in_control and s.autopilot.armed
+    """Return whether the drone has its motors on, is not on the ground, and follows the companion."""
+    return s.autopilot.in_control and s.autopilot.armed and s.autopilot.landed is not True
 
 
 _ACCEPTED = CommandReply(accepted=True, reason="")

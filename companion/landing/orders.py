@@ -7,6 +7,7 @@ from companion.core.reasons import Reason
 from companion.landing.decisions.conditions import HELD_UP, holds, is_low_above_pad
 from companion.landing.decisions.contact import may_force_motors_off
 from companion.landing.decisions.contact_signs import signs_of
+from companion.landing.decisions.taken_control import is_held_on_ground
 from companion.landing.sortie.events import is_quiet_for_long
 from companion.landing.state.memory import StepMemory
 from companion.landing.state.step_data import StepInputs
@@ -80,17 +81,21 @@ def _desire(memory: StepMemory, situation: Situation, config: CompanionConfig) -
                 stopped_and_held=progress.stopped_by_pad and held_up,
             )
             return Desire(armed=False, force_disarm=evidence)
-        case Phase.PILOT if progress.cause.reason is Reason.DRONE_TAKEN and _turns_for_nobody(memory, situation):
+        case Phase.HOLD | Phase.PILOT if _turns_for_nobody(memory, situation):
             return Desire(armed=False)
         case _:
             return Desire()  # control that was had and is lost is not taken back
 
 
 def _turns_for_nobody(memory: StepMemory, situation: Situation) -> bool:
-    """Return whether motors that were ordered before this companion gave way turn on the ground: both may have.
+    """Return whether motors turn on the ground after a take-off that was broken off, or ordered by who gave way.
 
     The disarm is a plain one, and ends with the mode: a person who flies meanwhile is left alone.
     """
+    if is_held_on_ground(memory.progress.phase, memory.control, situation):
+        return True
+    if memory.progress.cause.reason is not Reason.DRONE_TAKEN:
+        return False
     driver, view = memory.control.driver, situation.autopilot
     is_ordered = driver.arm_asked or driver.disarm_asked or is_arming(driver, situation.monotonic_ns)
     return is_ordered and view.landed is True and view.in_control and driver.disarm_refusals == 0

@@ -54,8 +54,17 @@ def take_events(
         known = obstacle(progress.held, situation, config)
         order = Order(command=inputs.command, station=inputs.station)
         due = way_home_due(memory.sortie, situation, config)
-        arms = is_arming(memory.control.driver, situation.monotonic_ns)
-        event, reply = answer(order, progress.phase, situation, config, known, called_home=due, is_arming=arms)
+        driver = memory.control.driver
+        event, reply = answer(
+            order,
+            progress.phase,
+            situation,
+            config,
+            known,
+            called_home=due,
+            is_arming=is_arming(driver, situation.monotonic_ns),
+            is_disarming=driver.disarm_asked and situation.autopilot.armed,
+        )
         if event is not None:
             memory = _enter(memory, event, _COMMANDED[inputs.command], situation, config)
         if reply.accepted:
@@ -106,14 +115,15 @@ def _learn_of_restart(memory: StepMemory, inputs: StepInputs) -> StepMemory:
 
 
 def _update_control(memory: StepMemory, inputs: StepInputs) -> StepMemory:
-    """Take note of whether the autopilot is the companion's, and armed so."""
+    """Take note of whether the autopilot is the companion's, armed so, and in the air."""
     control, view = memory.control, inputs.autopilot
     flies = memory.progress.phase in FLYING_PHASES
     in_control = flies and (control.was_in_control or view.in_control)
     armed = in_control and (control.was_armed or (view.in_control and view.armed))
-    if (in_control, armed) == (control.was_in_control, control.was_armed):
+    flown = flies and (control.has_flown or (view.armed and view.landed is False))
+    if (in_control, armed, flown) == (control.was_in_control, control.was_armed, control.has_flown):
         return memory
-    return replace(memory, control=replace(control, was_in_control=in_control, was_armed=armed))
+    return replace(memory, control=replace(control, was_in_control=in_control, was_armed=armed, has_flown=flown))
 
 
 def _enter(memory: StepMemory, event: Event, cause: Cause, situation: Situation, config: CompanionConfig) -> StepMemory:

@@ -28,7 +28,7 @@ from companion.landing.decisions.entries import DRIVES, ENTRIES, Decision
 from companion.landing.decisions.feasibility import is_drone_taken, obstacle
 from companion.landing.decisions.passing import vehicle_passes
 from companion.landing.decisions.retries import end_climb
-from companion.landing.decisions.taken_control import find_taken_control
+from companion.landing.decisions.taken_control import find_taken_control, is_held_on_ground
 from companion.landing.decisions.waiting import waited_s
 from companion.landing.state.memory import ControlMemory, Held, Progress
 from companion.situation.phases import FLYING_PHASES, LANDING_PHASES, Event, Phase
@@ -194,8 +194,12 @@ def _motors_off(progress: Progress, control: ControlMemory, s: Situation) -> Dec
 
 
 def _never_armed(progress: Progress, control: ControlMemory, s: Situation) -> Decision | None:
-    """Return that a take-off is called off whose order to arm was under way when it was to be held, and failed."""
-    turns = control.was_armed or may_turn(s.autopilot, control.driver, s.monotonic_ns)
+    """Return that a take-off is called off that was to be held on the ground, once no motor can turn.
+
+    Its order to arm was under way and has failed, or the motors have been switched off again.
+    """
+    was_undone = is_held_on_ground(progress.phase, control, s) and control.driver.disarm_asked
+    turns = (control.was_armed and not was_undone) or may_turn(s.autopilot, control.driver, s.monotonic_ns)
     return None if turns or s.autopilot.landed is False else (Event.CALLED_OFF, progress.cause)
 
 

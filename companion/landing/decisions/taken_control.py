@@ -17,6 +17,11 @@ def find_taken_control(phase: Phase, control: ControlMemory, s: Situation) -> De
     return None if reason is None else (Event.PILOT_TOOK_OVER, Cause(reason))
 
 
+def is_held_on_ground(phase: Phase, control: ControlMemory, s: Situation) -> bool:
+    """Return whether a take-off was broken off before the drone has left the ground: there it has nothing to hold."""
+    return phase is Phase.HOLD and not control.has_flown and s.autopilot.landed is True
+
+
 def _why_taken(phase: Phase, control: ControlMemory, s: Situation) -> Reason | None:
     """Return why somebody else flies, None if nobody else does."""
     if not (control.was_in_control or _is_switched(control, s)):
@@ -24,8 +29,9 @@ def _why_taken(phase: Phase, control: ControlMemory, s: Situation) -> Reason | N
     if s.autopilot.failsafe or s.autopilot.overruled:
         return Reason.AUTOPILOT_FAILSAFE
     is_off_told = s.autopilot.disarm_told or not s.autopilot.armed
-    if phase is Phase.TOUCHDOWN and is_off_told:
-        return None  # as wanted; a mode that changes with it is not the pilot's
+    is_off_wanted = phase is Phase.TOUCHDOWN or (is_held_on_ground(phase, control, s) and control.driver.disarm_asked)
+    if is_off_wanted and is_off_told:
+        return None  # a mode that changes with it is not the pilot's
     if not s.autopilot.in_control:
         return _why_not_in_control(control, s, is_off_told=is_off_told)
     # On a deck, too: a person did it, or the autopilot's time was over, and nobody expects the motors to start again.

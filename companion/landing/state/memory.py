@@ -136,12 +136,14 @@ class ControlMemory(Struct, frozen=True, kw_only=True, eq=False):
         mode_before: of the autopilot as the flight began.
         was_in_control: the autopilot's mode has been the companion's since the start.
         was_armed: and its motors were armed in that mode.
+        has_flown: it has told since the start that it is in the air.
     """
 
     driver: DriverMemory = field(default_factory=DriverMemory)
     mode_before: int | None = None
     was_in_control: bool = False
     was_armed: bool = False
+    has_flown: bool = False
 
 
 class Places(Struct, frozen=True, kw_only=True, eq=False):
