@@ -13,6 +13,7 @@ from companion.autopilots.response import Cascade, Shaping
 from companion.core.data import FlightLimits, RangeReading, Setpoint
 from link.frames.geodesy import LocalFrame, Projection
 from link.mavlink.dialect import Message, mavlink
+from link.mavlink.peer import LOST_AFTER_NS
 from link.mavlink.requests import ONCE, Retries
 
 
@@ -209,6 +210,18 @@ class Driver(Protocol):
 
     def shaping(self, parameters: Mapping[str, float]) -> Shaping | None:
         """Return how it carries setpoints on, from its own parameters; None if it holds them as they came."""
+
+
+_WAITED_SHARE = 0.9  # of the autopilot's time-out; the rest is for the way there and back
+_WAITED_MIN_S = 0.5  # a shorter time-out cannot be told from a late message
+
+
+def gives_up_after_s(driver: Driver, timeout_s: float) -> float:
+    """Return for how long nothing may be heard of an autopilot until it may have given up on setpoints.
+
+    One that waits in the mode that follows them does not give up; it is out of touch when its link is lost.
+    """
+    return LOST_AFTER_NS * 1e-9 if driver.waits_in_mode else max(_WAITED_SHARE * timeout_s, _WAITED_MIN_S)
 
 
 def streams_hz(driver: Driver, motion_rate_hz: float, *, stops_unused: bool) -> dict[int, float]:

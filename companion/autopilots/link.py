@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 
 from companion.autopilots.choice import driver_for
-from companion.autopilots.driver import AutopilotCommand, AutopilotView, Driver, streams_hz
+from companion.autopilots.driver import AutopilotCommand, AutopilotView, Driver, gives_up_after_s, streams_hz
 from companion.autopilots.heartbeat import with_acknowledgement
 from companion.autopilots.late_reports import LateReports
 from companion.autopilots.limits import LimitQuestions
@@ -26,7 +26,6 @@ from link.mavlink.events import (
     MessageReceived,
     ParameterMissing,
 )
-from link.mavlink.peer import LOST_AFTER_NS
 from link.mavlink.session import MavlinkSession
 from link.records import replace
 
@@ -36,8 +35,6 @@ _ASK_KNOWN_ORIGIN_NS = 5_000_000_000
 _CLOCK_SET_NS = 20_000_000  # SYSTEM_TIME comes in whole milliseconds: no fit is refined by so much at once
 _BY_ITSELF = AutopilotConfig()
 _LimitsAsked = tuple[FlightLimits, Driver, Mapping[str, float]]
-_WAITED_SHARE = 0.9  # of the autopilot's time-out; the rest is for the way there and back
-_WAITED_MIN_S = 0.5  # a shorter time-out cannot be told from a late message
 
 
 class AutopilotLink:
@@ -150,8 +147,7 @@ class AutopilotLink:
                     self._heard_ns = local_ns
                     self._hear(event.message, self.driver, local_ns)
                 case LinkFound():
-                    self.driver = driver_for(event.autopilot, event.vehicle_type, self._config.kind)
-                    self._ask_for_streams(self.driver, local_ns)
+                    self._find(event, local_ns)
                 case LinkLost() | LinkRegained():
                     self._follow_link(is_regained=isinstance(event, LinkRegained))
                 case AutopilotRestarted():
@@ -165,6 +161,16 @@ class AutopilotLink:
                     self._take_answer(event.command, event.ticket)
                 case ParameterMissing():
                     self._questions.unanswered(event.name, local_ns)
+
+    def _find(self, found: LinkFound, local_ns: int) -> None:
+        """Take the first autopilot, or another kind of it in its place; one that flies is not exchanged."""
+        if self.driver is not None and self.state.view.armed:
+            return
+        before, self.driver = self.driver, driver_for(found.autopilot, found.vehicle_type, self._config.kind)
+        if before is not None and before is not self.driver:
+            self.state = replace(self.state, parameters={})
+            self._start_over()
+        self._ask_for_streams(self.driver, local_ns)
 
     def _hear(self, message: Message, driver: Driver, local_ns: int) -> None:
         if self._late.is_late(message, local_ns):
@@ -215,16 +221,10 @@ class AutopilotLink:
         return self.state.parameters.get(self.driver.timeout_parameter, self.driver.timeout_default_s)
 
     def _is_out_of_touch(self, local_ns: int) -> bool:
-        """Return whether the autopilot may have given up on setpoints, since it is silent or since we stood still.
-
-        One that waits in the mode that follows them does not give up; it is out of touch when its link is lost.
-        """
+        """Return whether the autopilot may have given up on setpoints, since it is silent or since we stood still."""
         if self.driver is None or self._heard_ns is None or self._polled_ns is None:
             return False
-        apart_s = (local_ns - min(self._heard_ns, self._polled_ns)) * 1e-9
-        if self.driver.waits_in_mode:
-            return apart_s > LOST_AFTER_NS * 1e-9
-        return apart_s > max(_WAITED_SHARE * self.timeout_s, _WAITED_MIN_S)
+        return (local_ns - min(self._heard_ns, self._polled_ns)) * 1e-9 > gives_up_after_s(self.driver, self.timeout_s)
 
     def _ask_for_streams(self, driver: Driver, local_ns: int) -> None:
         wanted_hz = streams_hz(driver, self._motion_rate_hz, stops_unused=self._config.stops_unused_streams)

@@ -75,6 +75,7 @@ class Peer:
         self._own = own
         self._requests: list[Message] = []
         self._last_heard_ns = self._last_beat_ns = 0
+        self._other_told: int | None = None
 
     def accepts(self, message: Message) -> bool:
         """Whether a message is from the autopilot and for us or for everybody; anybody's requests are kept."""
@@ -117,12 +118,11 @@ class Peer:
         return [LinkLost(t_ns=t_ns, last_heard_ns=self._last_heard_ns)]
 
     def _heartbeat(self, message: Message, t_ns: int) -> list[Event]:
-        is_first = self.autopilot is None
         self.target_system_id = message.get_srcSystem()
-        self.autopilot = message.autopilot
-        self.vehicle_type = message.type
-        if not is_first:
+        if self.autopilot is not None and not self._is_exchanged(message):
+            self.vehicle_type = message.type
             return []
+        self.autopilot, self.vehicle_type = message.autopilot, message.type
         self.is_up = True
         return [
             LinkFound(
@@ -133,6 +133,12 @@ class Peer:
                 vehicle_type=message.type,
             )
         ]
+
+    def _is_exchanged(self, message: Message) -> bool:
+        """Whether another kind of autopilot answers, as after its firmware was; a single heartbeat may be anybody's."""
+        told: int | None = message.autopilot if message.autopilot != self.autopilot else None
+        is_told_again, self._other_told = told is not None and told == self._other_told, told
+        return is_told_again and not message.base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED
 
 
 class RestartWatch:

@@ -135,6 +135,23 @@ def test_parameter_that_was_changed_while_nobody_was_heard_is_read_again(restart
     assert talk.link.state.parameters[SPEED_MAX] == 4.0
 
 
+def test_autopilot_of_another_kind_is_driven_as_such_once_it_has_told_so_twice_with_its_motors_off() -> None:
+    talk = Talk(FakePx4())
+    talk.run(2.0)
+    assert talk.link.driver is not None
+    assert talk.link.driver.name == "px4"
+    talk.autopilot.firmware = mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA
+    talk.run(0.9)
+    assert talk.link.driver.name == "px4"
+    talk.run(2.2)
+    assert talk.link.driver.name == "ardupilot"
+    assert not talk.link.state.parameters
+    talk.autopilot.firmware = mavlink.MAV_AUTOPILOT_PX4
+    talk.autopilot.armed = True
+    talk.run(5.0)
+    assert talk.link.driver.name == "ardupilot"
+
+
 def test_parameter_that_a_quick_restart_has_changed_is_read_again() -> None:
     talk = Talk(FakePx4(parameters={SPEED_MAX: (12.0, mavlink.MAV_PARAM_TYPE_REAL32)}))
     talk.autopilot.restart(talk.t_ns)
