@@ -30,8 +30,26 @@ def started(results: dict[int, tuple[int, ...]]) -> Setup:
 
 @pytest.mark.parametrize("command", ENDS)
 @pytest.mark.parametrize("later_s", [0.0, 0.3])
-def test_drone_that_arms_after_the_abort_is_held_and_not_left_alone(command: Command, later_s: float) -> None:
+def test_drone_that_arms_on_the_ground_after_the_abort_is_switched_off(command: Command, later_s: float) -> None:
     setup = started({})
+    setup.run(later_s)
+    setup.node.request(command)
+    setup.run(4.0)
+    assert [reply.accepted for reply in setup.node.take_replies()] == [True]
+    assert not setup.autopilot.armed
+    assert setup.node.phase is Phase.IDLE
+    arm, *disarms = (message.param1 for message in setup.autopilot.commands(ARM))
+    assert arm == 1.0
+    assert set(disarms) == {0.0}
+
+
+@pytest.mark.parametrize("command", ENDS)
+@pytest.mark.parametrize("later_s", [0.0, 0.3])
+def test_drone_that_has_left_the_ground_after_the_abort_is_held_and_not_left_alone(
+    command: Command, later_s: float
+) -> None:
+    setup = started({})
+    setup.autopilot.landed_state = mavlink.MAV_LANDED_STATE_IN_AIR
     setup.run(later_s)
     setup.node.request(command)
     setup.run(4.0)
