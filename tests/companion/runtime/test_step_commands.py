@@ -53,10 +53,25 @@ def test_switch_starts_holds_and_starts_again() -> None:
     assert pilot.switch(HIGH) is Phase.TAKEOFF
     pilot.setup.run(2.0, pilot.setup.fixes)
     assert pilot.autopilot.armed
+    pilot.autopilot.landed_state = mavlink.MAV_LANDED_STATE_IN_AIR
     assert pilot.switch(MIDDLE) is Phase.HOLD
     assert pilot.switch(LOW) is Phase.HOLD
     assert pilot.switch(HIGH) is Phase.WAITING
     assert "refuses" not in pilot.texts()
+
+
+@pytest.mark.slow
+def test_switch_that_holds_a_drone_on_the_ground_stops_its_motors_and_starts_again() -> None:
+    pilot = Piloted(arms=True)
+    assert pilot.switch(HIGH) is Phase.TAKEOFF
+    pilot.setup.run(2.0, pilot.setup.fixes)
+    assert pilot.autopilot.armed
+    assert pilot.switch(MIDDLE) is Phase.HOLD
+    pilot.setup.run(2.0, pilot.setup.fixes)
+    assert not pilot.autopilot.armed
+    assert pilot.setup.node.phase is Phase.IDLE
+    pilot.switch(LOW)
+    assert pilot.switch(HIGH) is Phase.TAKEOFF
 
 
 def test_switch_starts_no_motors_unless_it_is_allowed_to() -> None:

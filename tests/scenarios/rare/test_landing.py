@@ -34,7 +34,7 @@ def test_noise_decides_the_landing_and_a_move_changes_it(tmp_path: Path) -> None
 
 @pytest.mark.slow
 def test_redrawn_landing_flies_the_same_again(tmp_path: Path) -> None:
-    subject = Cell(cell=load_scenario(short_cell(tmp_path, time_limit_s=1.5)))
+    subject = Cell(cell=load_scenario(short_cell(tmp_path, time_limit_s=3.0)))
     before = fly_landing(subject, NoiseInFlight(FIRST))
     climbing_s = 0.2 * before.duration_s  # how far it has climbed by the end decides its margin
     redrawn = NoiseInFlight(FIRST, redraw_seed=8, from_s=climbing_s)
