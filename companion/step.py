@@ -15,11 +15,11 @@ from companion.landing.sortie.phases import over_deck
 from companion.landing.state.memory import ModelMemory, StepMemory, to_present_frame
 from companion.landing.state.step_data import StepInputs, StepOutputs, System
 from companion.landing.state.vehicle_update import place_by_deck, predict_pad, update_vehicle
+from companion.landing.steering.losing import lost_for_s
 from companion.landing.steering.regain import regain
 from companion.landing.steering.virtual_model import (
     NO_RIDE,
     Ride,
-    lost_for_s,
     state_then,
     tracking_error_max_m,
     update_ride,
@@ -142,7 +142,7 @@ def _situation(memory: StepMemory, pad: PadPath | None, inputs: StepInputs, syst
         following=Following(
             reference=memory.model.reference,
             error_m=memory.model.tracking.error_m,
-            lost_for_s=lost_for_s(memory.model.tracking, inputs.monotonic_ns),
+            lost_for_s=lost_for_s(memory.model.tracking.losses, inputs.monotonic_ns),
             error_max_m=tracking_error_max_m(
                 memory.model.reference, inputs.response, inputs.link_delay.std_s, system.config.abort.tracking_stds_max
             ),

@@ -25,13 +25,13 @@ from companion.landing.decisions.conditions import (
     tell_taken,
 )
 from companion.landing.decisions.standing import has_touched, tell_blown_off, would_blow_off
+from companion.landing.steering.losing import LOST_FOR_S
 from companion.situation.phases import LANDING_PHASES, NEAR_PHASES, Phase
 from companion.situation.situation import Approach, Situation
 from companion.vehicle.pad_reach import cone_radius_m, is_unseen, is_vague
 
 _DESCENT = frozenset({Phase.DESCEND})
 _MIXED_HOLD_S = 1.5  # three counts: a step of the drone's own frame has sightings of half a second rejected
-_LOST_FOR_S = 2.0  # again and again, by plans from where it is: an uplink that is out for so long may come again
 _MOSTLY = 0.5  # of the ways in which a descent may go on
 
 
@@ -81,7 +81,7 @@ def why_unplaced(s: Situation) -> Cause | None:
 
 def is_not_followed(s: Situation, _: CompanionConfig) -> bool:
     """Return whether the drone is farther from its setpoint than gusts and the link bring it, or loses it for long."""
-    return s.following.error_m > s.following.error_max_m or s.following.lost_for_s > _LOST_FOR_S
+    return s.following.error_m > s.following.error_max_m or s.following.lost_for_s > LOST_FOR_S
 
 
 def _is_beside_cone(a: Approach, c: CompanionConfig) -> bool:

@@ -12,7 +12,8 @@ import numpy as np
 
 from companion.autopilots.response import STATES, ResponseModel
 from companion.landing.steering.flown_plan import extrapolate
-from companion.landing.steering.virtual_model import BREAK_S, Tracking, lost_for_s, state_then
+from companion.landing.steering.losing import add_loss
+from companion.landing.steering.virtual_model import BREAK_S, Tracking, state_then
 from companion.planning.guidance import ReferenceState
 from link.records import replace
 
@@ -50,9 +51,8 @@ def regain(tracking: Tracking, response: ResponseModel, monotonic_ns: int) -> Tr
     deviation = np.zeros((STATES, 2))
     if not response.cascade.is_led:
         deviation[2] = drone.acceleration_enu_m_s2[:2]
-    is_again = lost_for_s(tracking, since_ns) > 0.0
-    lost_since_ns = tracking.lost_since_ns if is_again else since_ns
-    return replace(tracking, past=past, deviation=deviation, regained_ns=since_ns, lost_since_ns=lost_since_ns)
+    losses = add_loss(tracking.losses, since_ns, drone, tracking.deviation[0])
+    return replace(tracking, past=past, deviation=deviation, losses=losses)
 
 
 def _drone(tracking: Tracking, t_ns: int) -> ReferenceState:

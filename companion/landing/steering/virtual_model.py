@@ -12,6 +12,7 @@ from msgspec import Struct, field
 
 from companion.autopilots.response import STATES, Cascade, ResponseModel
 from companion.core.data import GRAVITY_M_S2, STEP_MAX_S, Array, OwnState, Setpoint
+from companion.landing.steering.losing import Losses, move_losses
 from companion.landing.steering.targets import HORIZON_OFFSETS_S
 from companion.planning.guidance import ReferenceState
 from link.frames.rotations import rotate
@@ -23,7 +24,6 @@ _AIR_MEAN_S = 1.0  # longer than a gust's beginning, shorter than a change of sp
 _HOLDS_MEAN_S = 0.1  # of five reports, shorter than a position controller's swing
 _RIDE_MEAN_S = 0.5  # as the last quarter of a metre takes before it may touch
 _RIDE_MAX_M = 0.15  # a lag of 0.3 s while it sinks at 0.5 m/s: what is more does not last
-_FOLLOWS_S = 1.0  # without being lost: the time constant of a position loop, 1 / K_p
 BREAK_S = 0.25  # between two reports, after which the deviation is what the next one shows
 _ACCELERATION_MAX_M_S2 = 10.0  # of the model between two steps: it is set back at times, and that is no motion
 
@@ -34,9 +34,7 @@ class Tracking(Struct, frozen=True, kw_only=True, eq=False):
     Attributes:
         past: the model at monotonic times in ns, oldest first, up to where the newest setpoint leads.
         error_m: from the drone to the model at the time of its newest report.
-        regained_ns: monotonic time of the report at which the model was put at the drone last (`steering.regain`); None
-            before.
-        lost_since_ns: of the first of those that followed each other within a second; None while there is none.
+        losses: the reports at which the model was put at the drone (`steering.regain`); None before.
         deviation: (4, 2) horizontal state of `ResponseModel` then: from the model to the drone, and what moves it.
         air_enu_m_s2: (2,) horizontal thrust by mass that holds against the air, a mean of the last second.
         holds_enu_m_s2: (2,) the same by the lean alone, as of a drone that keeps its climb, beyond what the model
@@ -47,8 +45,7 @@ class Tracking(Struct, frozen=True, kw_only=True, eq=False):
 
     past: tuple[tuple[int, ReferenceState], ...] = ()
     error_m: float = 0.0
-    regained_ns: int | None = None
-    lost_since_ns: int | None = None
+    losses: Losses | None = None
     deviation: Array = field(default_factory=lambda: np.zeros((STATES, 2)))
     air_enu_m_s2: Array = field(default_factory=lambda: np.zeros(2))
     holds_enu_m_s2: Array = field(default_factory=lambda: np.zeros(2))
@@ -71,7 +68,7 @@ def move_tracking(tracking: Tracking, by_enu_m: Array) -> Tracking:
     moved = tuple(
         (t_ns, replace(state, position_enu_m=state.position_enu_m + by_enu_m)) for t_ns, state in tracking.past
     )
-    return replace(tracking, past=moved)
+    return replace(tracking, past=moved, losses=move_losses(tracking.losses, by_enu_m))
 
 
 def state_then(tracking: Tracking, t_ns: int) -> ReferenceState:
@@ -154,14 +151,6 @@ def update_ride(ride: Ride, t_ns: int, above_m: float, foot_below_m: float) -> R
         return Ride(above_m=above_m, t_ns=t_ns)
     share = -math.expm1(-min((t_ns - ride.t_ns) * 1e-9, STEP_MAX_S) / _RIDE_MEAN_S)
     return Ride(above_m=ride.above_m + share * (above_m - ride.above_m), t_ns=t_ns)
-
-
-def lost_for_s(tracking: Tracking, monotonic_ns: int) -> float:
-    """Return for how long the drone has lost its model again and again, 0 of one that has followed for a second."""
-    regained_ns, since_ns = tracking.regained_ns, tracking.lost_since_ns
-    if regained_ns is None or since_ns is None or (monotonic_ns - regained_ns) * 1e-9 > _FOLLOWS_S:
-        return 0.0
-    return (monotonic_ns - since_ns) * 1e-9
 
 
 def tracking_error_max_m(

@@ -65,10 +65,10 @@ def test_switch_that_holds_a_drone_on_the_ground_stops_its_motors_and_starts_aga
     pilot = Piloted(arms=True)
     assert pilot.switch(HIGH) is Phase.TAKEOFF
     pilot.setup.run(2.0, pilot.setup.fixes)
-    assert pilot.autopilot.armed
+    was_armed = pilot.autopilot.armed
     assert pilot.switch(MIDDLE) is Phase.HOLD
     pilot.setup.run(2.0, pilot.setup.fixes)
-    assert not pilot.autopilot.armed
+    assert (was_armed, pilot.autopilot.armed) == (True, False)
     assert pilot.setup.node.phase is Phase.IDLE
     pilot.switch(LOW)
     assert pilot.switch(HIGH) is Phase.TAKEOFF
