@@ -51,7 +51,7 @@ def regain(tracking: Tracking, response: ResponseModel, monotonic_ns: int) -> Tr
     deviation = np.zeros((STATES, 2))
     if not response.cascade.is_led:
         deviation[2] = drone.acceleration_enu_m_s2[:2]
-    losses = add_loss(tracking.losses, since_ns, drone, tracking.deviation[0])
+    losses = add_loss(tracking.losses, since_ns, drone.velocity_enu_m_s[:2], tracking.deviation[1])
     return replace(tracking, past=past, deviation=deviation, losses=losses)
 
 

@@ -12,7 +12,7 @@ from msgspec import Struct, field
 
 from companion.autopilots.response import STATES, Cascade, ResponseModel
 from companion.core.data import GRAVITY_M_S2, STEP_MAX_S, Array, OwnState, Setpoint
-from companion.landing.steering.losing import Losses, move_losses
+from companion.landing.steering.losing import Losses
 from companion.landing.steering.targets import HORIZON_OFFSETS_S
 from companion.planning.guidance import ReferenceState
 from link.frames.rotations import rotate
@@ -68,7 +68,7 @@ def move_tracking(tracking: Tracking, by_enu_m: Array) -> Tracking:
     moved = tuple(
         (t_ns, replace(state, position_enu_m=state.position_enu_m + by_enu_m)) for t_ns, state in tracking.past
     )
-    return replace(tracking, past=moved, losses=move_losses(tracking.losses, by_enu_m))
+    return replace(tracking, past=moved)
 
 
 def state_then(tracking: Tracking, t_ns: int) -> ReferenceState:
