@@ -163,9 +163,7 @@ class AutopilotLink:
                     self._questions.unanswered(event.name, local_ns)
 
     def _find(self, found: LinkFound, local_ns: int) -> None:
-        """Take the first autopilot, or another kind of it in its place; one that flies is not exchanged."""
-        if self.driver is not None and self.state.view.armed:
-            return
+        """Take the first autopilot, or another kind of it in its place."""
         before, self.driver = self.driver, driver_for(found.autopilot, found.vehicle_type, self._config.kind)
         if before is not None and before is not self.driver:
             self.state = replace(self.state, parameters={})

@@ -135,10 +135,14 @@ class Peer:
         ]
 
     def _is_exchanged(self, message: Message) -> bool:
-        """Whether another kind of autopilot answers, as after its firmware was; a single heartbeat may be anybody's."""
-        told: int | None = message.autopilot if message.autopilot != self.autopilot else None
+        """Whether another kind of autopilot answers with its motors off, as after its firmware was exchanged.
+
+        A single heartbeat may be anybody's.
+        """
+        is_other = message.autopilot != self.autopilot and not message.base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED
+        told: int | None = message.autopilot if is_other else None
         is_told_again, self._other_told = told is not None and told == self._other_told, told
-        return is_told_again and not message.base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED
+        return is_told_again
 
 
 class RestartWatch:

@@ -4,7 +4,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 
 import pytest
@@ -18,10 +18,10 @@ from link.zenoh.session import Sample, ZenohOptions, ZenohSession, open_session
 from scenarios.catalogue.catalogue import load_scenario
 from scenarios.processes.programs import free_tcp_endpoint
 from scenarios.simulation.vehicle_node import VehicleNode, datum_of, departing_at_once
+from tests.link.zenoh.waiting import DEADLINE_S, until
 
 START_NS = 1_800_000_000_000_000_000
 STEP_NS = 10_000_000
-DEADLINE_S = 30.0
 KEYS = Keys()
 
 
@@ -125,13 +125,6 @@ def program(*arguments: str) -> Iterator[tuple[subprocess.Popen[bytes], ZenohSes
                 yield process, session
         finally:
             process.kill()
-
-
-def until(session: ZenohSession, condition: Callable[[], bool]) -> None:
-    end_s = time.monotonic() + DEADLINE_S
-    while not condition():
-        assert time.monotonic() < end_s, "the deadline has passed"
-        session.wake_up.wait(0.05)
 
 
 @pytest.mark.wire

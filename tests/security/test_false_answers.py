@@ -1,18 +1,17 @@
 """Somebody who answers an operator in the companion's place, where no companion runs."""
 
-import time
-
 import pytest
 
 from link.errors import UserError
 from link.messages import Command, CommandReply, Order
 from link.payloads import json_messages
 from link.zenoh.keys import Keys
-from link.zenoh.session import ZenohOptions, ZenohSession, open_session
+from link.zenoh.session import ZenohOptions, open_session
 from scenarios.commands import operator as operator_command
 from scenarios.commands.operator import send_order
 from scenarios.processes.programs import free_tcp_endpoint
 from scenarios.view.live import LiveSource
+from tests.link.zenoh.waiting import until
 
 KEYS = Keys()
 ACCEPTED = CommandReply(accepted=True, reason="")
@@ -47,15 +46,8 @@ def test_who_answers_beside_the_companion_is_noticed(monkeypatch: pytest.MonkeyP
         companion.serve(KEYS.landing_command, lambda _: json_messages.encode(refused))
         companion.declare_alive(KEYS.companion_alive("1"))
         liar.serve(KEYS.landing_command, lambda _: json_messages.encode(ACCEPTED))
-        await_answers(companion, 2)
+        until(companion, lambda: len(companion.query(KEYS.landing_command, b"", 5.0)) == 2)
         with pytest.raises(UserError, match=r"2 programs answer.*accepted; refused: nothing to abort"):
             send_order(Order(command=Command.ABORT), KEYS, by_it)
         told = "2 programs answer: end all but one (accepted; refused: nothing to abort in phase idle)"
         assert LiveSource(companion, KEYS).send(Command.ABORT).reason == told
-
-
-def await_answers(session: ZenohSession, count: int) -> None:
-    """Wait until so many answer a command."""
-    until_s = time.monotonic() + 10.0
-    while len(session.query(KEYS.landing_command, b"", 5.0)) < count:
-        assert time.monotonic() < until_s

@@ -84,10 +84,9 @@ def _gusts(memory: StepMemory, inputs: StepInputs) -> Gusts:
     flies_evenly = memory.progress.phase in (Phase.ALIGN, Phase.DESCEND) and bool(tracking.deviation.any())
     if not flies_evenly or tracking.compared_ns is None or inputs.response is None or reference is None:
         return gusts
-    if (
-        tracking.losses is not None and tracking.losses.newest_ns == tracking.compared_ns
-    ):  # from here on the push is estimated anew
-        gusts = forget_push(gusts)
+    losses = tracking.losses
+    if losses is not None and losses.newest_ns == tracking.compared_ns:
+        gusts = forget_push(gusts)  # from here on it is estimated anew
     path_m_s2 = reference.acceleration_enu_m_s2[:2]
     return update_gusts(gusts, tracking.compared_ns, tracking.deviation, path_m_s2, inputs.response)
 

@@ -135,12 +135,15 @@ def test_parameter_that_was_changed_while_nobody_was_heard_is_read_again(restart
     assert talk.link.state.parameters[SPEED_MAX] == 4.0
 
 
-def test_autopilot_of_another_kind_is_driven_as_such_once_it_has_told_so_twice_with_its_motors_off() -> None:
-    talk = Talk(FakePx4())
+@pytest.mark.parametrize("was_armed", [False, True])
+def test_autopilot_of_another_kind_is_driven_as_such_once_it_has_told_so_twice_with_its_motors_off(
+    *, was_armed: bool
+) -> None:
+    talk = Talk(FakePx4(armed=was_armed))
     talk.run(2.0)
     assert talk.link.driver is not None
     assert talk.link.driver.name == "px4"
-    talk.autopilot.firmware = mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA
+    talk.autopilot.firmware, talk.autopilot.armed = mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA, False
     talk.run(0.9)
     assert talk.link.driver.name == "px4"
     talk.run(2.2)

@@ -23,7 +23,8 @@ from link.ros2.type_hash import service_hash
 from link.zenoh.keys import Keys
 from link.zenoh.library_config import is_matched
 from link.zenoh.session import ZenohOptions, open_session
-from tests.link.zenoh.test_session import free_endpoint, until
+from tests.link.zenoh.test_session import free_endpoint
+from tests.link.zenoh.waiting import until
 
 DOMAIN = 3
 KEYS = Keys()

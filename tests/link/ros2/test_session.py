@@ -25,7 +25,8 @@ from link.zenoh.keys import Keys
 from link.zenoh.session import Sample, ZenohOptions, open_session
 from tests.link.ros2.test_foreign import transform
 from tests.link.ros_definitions import TFMessage
-from tests.link.zenoh.test_session import free_endpoint, until
+from tests.link.zenoh.test_session import free_endpoint
+from tests.link.zenoh.waiting import until
 
 DOMAIN = 3
 KEYS = Keys(vehicle="car")

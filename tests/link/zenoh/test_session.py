@@ -7,7 +7,7 @@ import socket
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import ExitStack
 from pathlib import Path
 
@@ -15,8 +15,8 @@ import pytest
 
 from link.errors import UserError
 from link.zenoh.session import Inbox, Sample, ZenohOptions, ZenohSession, open_session
+from tests.link.zenoh.waiting import until
 
-DEADLINE_S = 20.0
 JSON = "application/json"
 
 
@@ -39,14 +39,6 @@ def peer_count(session: ZenohSession) -> int:
     """Return how many other sessions it is connected to."""
     info = session._session.info  # noqa: SLF001 (nobody but these tests wants to know)
     return len(info.peers_zid()) + len(info.routers_zid())
-
-
-def until(session: ZenohSession, condition: Callable[[], bool]) -> None:
-    """Wait, woken by what `session` receives, until `condition` holds."""
-    end_s = time.monotonic() + DEADLINE_S
-    while not condition():
-        assert time.monotonic() < end_s, "the deadline has passed"
-        session.wake_up.wait(0.01)
 
 
 def first_samples(sender: ZenohSession, receiver: ZenohSession, inbox: Inbox, key: str) -> list[Sample]:

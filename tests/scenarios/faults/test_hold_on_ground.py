@@ -1,5 +1,7 @@
 """A take-off that is broken off before the drone has left the ground: its motors stop, and nothing hovers above it."""
 
+from collections.abc import Sequence
+
 import pytest
 
 from companion.core.reasons import Reason
@@ -26,7 +28,7 @@ class _Flight(FaultFlight):
         self.replies.clear()
         self.stood_m = self.height_m
 
-    def _take(self, replies: list[CommandReply]) -> None:  # type: ignore[override]
+    def _take(self, replies: Sequence[CommandReply]) -> None:
         self.replies += replies
 
     def told(self) -> tuple[str, str]:
