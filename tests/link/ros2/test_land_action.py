@@ -23,7 +23,7 @@ from link.ros2.type_hash import service_hash
 from link.zenoh.keys import Keys
 from link.zenoh.library_config import is_matched
 from link.zenoh.session import ZenohOptions, open_session
-from tests.link.zenoh.test_session import free_endpoint
+from scenarios.processes.programs import free_tcp_endpoint
 from tests.link.zenoh.waiting import until
 
 DOMAIN = 3
@@ -133,7 +133,7 @@ class Client:
 
 @pytest.fixture
 def client() -> Iterator[Client]:
-    there = free_endpoint()
+    there = free_tcp_endpoint()
     config = zenoh.Config.from_json5(
         f'{{mode: "client", connect: {{endpoints: ["{there}"]}}, scouting: {{multicast: {{enabled: false}}}}}}'
     )

@@ -23,9 +23,9 @@ from link.ros2.topic_map import PadTopics
 from link.zenoh.inbox import Inbox, WakeUp
 from link.zenoh.keys import Keys
 from link.zenoh.session import Sample, ZenohOptions, open_session
+from scenarios.processes.programs import free_tcp_endpoint
 from tests.link.ros2.test_foreign import transform
 from tests.link.ros_definitions import TFMessage
-from tests.link.zenoh.test_session import free_endpoint
 from tests.link.zenoh.waiting import until
 
 DOMAIN = 3
@@ -48,7 +48,7 @@ ENCODING = cdr.encoding_of(Fix)
 
 @pytest.fixture
 def endpoint() -> Iterator[str]:
-    there = free_endpoint()
+    there = free_tcp_endpoint()
     with open_session(ZenohOptions(mode="router", listen=(there,))):
         yield there
 

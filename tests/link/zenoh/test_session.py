@@ -3,7 +3,6 @@
 import json
 import os
 import signal
-import socket
 import subprocess
 import sys
 import time
@@ -15,16 +14,10 @@ import pytest
 
 from link.errors import UserError
 from link.zenoh.session import Inbox, Sample, ZenohOptions, ZenohSession, open_session
+from scenarios.processes.programs import free_tcp_endpoint
 from tests.link.zenoh.waiting import until
 
 JSON = "application/json"
-
-
-def free_endpoint() -> str:
-    """Return an endpoint on loopback whose port was free just now."""
-    with socket.socket() as probe:
-        probe.bind(("127.0.0.1", 0))
-        return f"tcp/127.0.0.1:{probe.getsockname()[1]}"
 
 
 def listener(endpoint: str) -> ZenohSession:
@@ -56,7 +49,7 @@ def first_samples(sender: ZenohSession, receiver: ZenohSession, inbox: Inbox, ke
 
 @pytest.fixture
 def endpoint() -> str:
-    return free_endpoint()
+    return free_tcp_endpoint()
 
 
 @pytest.fixture
@@ -342,7 +335,7 @@ def test_a_client_without_router_gives_up(endpoint: str) -> None:
 
 
 def test_a_configuration_file_is_used_and_options_go_before_it(tmp_path: Path, endpoint: str) -> None:
-    other = free_endpoint()
+    other = free_tcp_endpoint()
     path = tmp_path / "zenoh.json5"
     path.write_text(f"{{ /* ours */ mode: 'peer', listen: {{ endpoints: ['{endpoint}'] }} }}", encoding="utf-8")
     for options, reachable in (
@@ -415,7 +408,7 @@ def test_encoding_reaches_the_receiver(pair: tuple[ZenohSession, ZenohSession]) 
 def test_nothing_of_the_librarys_log_reaches_stderr(endpoint: str) -> None:
     code = (
         "import sys; from link.zenoh.session import *; from link.errors import UserError\n"
-        f"s = open_session(ZenohOptions(connect=({endpoint!r},), listen=({free_endpoint()!r},)))\n"
+        f"s = open_session(ZenohOptions(connect=({endpoint!r},), listen=({free_tcp_endpoint()!r},)))\n"
         "s.subscribe('a'); s.publish('a', b'', 'text/plain'); s.wake_up.wait(5.0); s.close()\n"
     )
     environment = os.environ | {"RUST_LOG": "debug"}
