@@ -121,7 +121,7 @@ class Reason(Enum):
     BROKEN_OFF = "broken off by the operator"
     NO_VEHICLE_DATA = "no vehicle data"
     HEARD_WITH_BREAKS = "vehicle or autopilot heard only with gaps"
-    NO_RETRY_LEFT = "no retry left"
+    NO_RETRY_LEFT = "no retry left: {}"
 
     # Another one is in command.
     AUTOPILOT_LOST = "out of touch with the autopilot"

@@ -1,7 +1,7 @@
 """Decides how a climb after an abort ends: with another approach, or with a hold and what forbids one."""
 
 from companion.config.companion import CompanionConfig
-from companion.core.reasons import Cause, Reason
+from companion.core.reasons import Cause, Reason, sentence
 from companion.integrity.stamps import named_by_stamps
 from companion.landing.decisions.aborts import is_out_of_range, why_unplaced
 from companion.landing.decisions.conditions import (
@@ -64,4 +64,4 @@ def _no_retry(progress: Progress, s: Situation, config: CompanionConfig) -> Caus
         first = Cause(Reason.TOO_FAR_FROM_START)
     first = first or impossible
     is_last = progress.interrupted_ns is None and progress.retries >= config.abort.retries_max
-    return Cause(Reason.NO_RETRY_LEFT) if first is None and is_last else first
+    return Cause(Reason.NO_RETRY_LEFT, (sentence(progress.cause),)) if first is None and is_last else first

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from companion.core.reasons import Reason
+from companion.core.reasons import Cause, Reason, sentence
 from companion.situation.phases import Phase
 from link.messages import BodyTruth, LandingStatus, RotorTruth
 from link.records import replace
@@ -126,29 +126,34 @@ def test_counts_are_the_same_after_they_were_written_as_text() -> None:
     assert add_counts([{"A": 1}, {"A": 1, "B": 3}]) == {"B": 3, "A": 2}
 
 
-def result(found: list[Approach], ended: str, why: Reason) -> dict[str, Any]:
+def result(found: list[Approach], ended: str, why: Cause) -> dict[str, Any]:
     told = [one.to_json(START_NS) for one in found]
-    return {"approaches": told, "ended": ended, "ended_reason": why.value, "ended_reason_code": why.name}
+    return {
+        "approaches": told,
+        "ended": ended,
+        "ended_reason": sentence(why),
+        "ended_reason_code": why.reason.name,
+    }
 
 
 def test_lines_tell_of_each_approach_why_it_was_broken_off() -> None:
     strays, first = (7.0, Phase.ALIGN, Reason.STRAYS), (8.0, Phase.ABORT, Reason.OUTSIDE_CONE)
     again, second = (9.0, Phase.CHASE, Reason.RETRY), (10.0, Phase.ABORT, Reason.SETPOINT_NOT_FOLLOWED)
     found = approaches(CHASE, ALIGN, DESCEND, strays, first, again, second)
-    table = result(found, "hold", Reason.NO_RETRY_LEFT)
+    table = result(found, "hold", Cause(Reason.NO_RETRY_LEFT, ("too fast",)))
     assert abort_reasons(table["approaches"]) == ["OUTSIDE_CONE", "SETPOINT_NOT_FOLLOWED"]
     heading, anew, one, two, ended, why = approach_lines(table)
     assert heading == "approaches"
     assert " ".join(anew.split()) == "1 back at 7.0 s lowest 2.20 m to align: because of STRAYS (STRAYS)"
     assert " ".join(one.split()).startswith("1 2.0 s to 8.0 s lowest 1.80 m broken off: ")
     assert two.endswith("broken off: because of SETPOINT_NOT_FOLLOWED (SETPOINT_NOT_FOLLOWED)")
-    assert ended == "it ended in hold: no retry left (NO_RETRY_LEFT)"
+    assert ended == "it ended in hold: no retry left: too fast (NO_RETRY_LEFT)"
     assert why == "approaches were broken off by OUTSIDE_CONE 1, SETPOINT_NOT_FOLLOWED 1"
 
 
 def test_lines_of_a_landing_are_those_of_its_approaches_only() -> None:
     contact, off = (11.0, Phase.TOUCHDOWN, Reason.CONTACT), (12.0, Phase.SECURED, Reason.MOTORS_OFF)
-    table = result(approaches(CHASE, ALIGN, DESCEND, contact, off), "secured", Reason.MOTORS_OFF)
+    table = result(approaches(CHASE, ALIGN, DESCEND, contact, off), "secured", Cause(Reason.MOTORS_OFF))
     assert len(list(approach_lines(table))) == 2
 
 

@@ -124,8 +124,9 @@ def test_retries_are_counted_down_to_a_hold() -> None:
     for retries in range(CONFIG.abort.retries_max):
         decision = decided(replace(progress(Phase.ABORT), retries=retries), high, LONG_HEARD)
         assert decision == (Event.CLEAR, Cause(Reason.RETRY, (retries + 1, CONFIG.abort.retries_max)))
-    last = replace(progress(Phase.ABORT), retries=CONFIG.abort.retries_max)
-    assert decided(last, high, LONG_HEARD) == (Event.CLEAR_TO_HOLD, Cause(Reason.NO_RETRY_LEFT))
+    last = replace(progress(Phase.ABORT), retries=CONFIG.abort.retries_max, cause=Cause(Reason.PAD_TO_BE_SEEN))
+    given_up = Cause(Reason.NO_RETRY_LEFT, ("pad to be seen again",))
+    assert decided(last, high, LONG_HEARD) == (Event.CLEAR_TO_HOLD, given_up)
 
 
 VAGUE = pad_at(placed=False)
