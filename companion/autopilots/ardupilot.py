@@ -60,11 +60,15 @@ _CLIMB = Limit(2.5, (Named("WPNAV_SPEED_UP", _CENTI), Named("WP_SPD_UP")))
 _DESCENT = Limit(1.5, (Named("WPNAV_SPEED_DN", _CENTI), Named("WP_SPD_DN")))
 # It follows no acceleration that changes faster.
 _JERK = Limit(5.0, tuple(Named(name, least=_JERK_LEAST_M_S3) for name in ("PSC_JERK_XY", "PSC_JERK_NE", "PSC_NE_JERK")))
-# It bounds that jerk by what its attitude controller can do, too (AC_PosControl::set_max_speed_accel_xy).
+# It bounds that jerk by what its attitude controller may do, too (AC_PosControl::set_max_speed_accel_xy). Degrees/s^2
+# and degrees/s; autotune sets the former, to 200 degrees/s^2 for propellers of 30 inches. The latter's default is none.
+_ATTITUDE_ACCELERATIONS = tuple(
+    Limit(1100.0, (Named(f"ATC_ACCEL_{axis}_MAX", _CENTI), Named(f"ATC_ACC_{axis}_MAX"))) for axis in "RP"
+)
+_ATTITUDE_RATES = tuple(Limit(math.inf, (Named(f"ATC_RATE_{axis}_MAX"),)) for axis in "RP")
 _ACCELERATION = Limit(
     2.5, (Named("WPNAV_ACCEL", _CENTI, _ACCELERATION_LEAST_M_S2), Named("WP_ACC", least=_ACCELERATION_LEAST_M_S2))
 )
-_ATTITUDE_RAD_S2 = math.radians(1100.0)  # ATC_ACCEL_P_MAX by default
 _VERTICAL_ACCELERATION = Limit(
     1.0, (Named("WPNAV_ACCEL_Z", _CENTI, _ACCELERATION_LEAST_M_S2), Named("WP_ACC_Z", least=_ACCELERATION_LEAST_M_S2))
 )
@@ -81,6 +85,8 @@ _LIMITS = (
     _ACCELERATION,
     _VERTICAL_ACCELERATION,
     _VERTICAL_JERK,
+    *_ATTITUDE_ACCELERATIONS,
+    *_ATTITUDE_RATES,
 )
 _CARRIED_MIN_S = 0.1  # ModeGuided::get_timeout_ms
 _POSITION_GAIN = ("PSC_POSXY_P", "PSC_NE_POS_P")
@@ -204,8 +210,10 @@ def _ask_to_take_off(memory: DriverMemory, height_m: float, monotonic_ns: int) -
 
 def _shaping_jerk_m_s3(parameters: Mapping[str, float]) -> float:
     """Return the jerk that its shaping keeps to: the one set, and no more than turning over and back leaves."""
-    attitude_m_s3 = 0.5 * math.sqrt(_ACCELERATION.find(parameters) * GRAVITY_M_S2 * _ATTITUDE_RAD_S2)
-    return min(_JERK.find(parameters), attitude_m_s3)
+    rate_m_s3 = GRAVITY_M_S2 * math.radians(min(limit.find(parameters) for limit in _ATTITUDE_RATES))
+    snap_m_s4 = GRAVITY_M_S2 * math.radians(min(limit.find(parameters) for limit in _ATTITUDE_ACCELERATIONS))
+    average_m_s3 = 0.5 * math.sqrt(_ACCELERATION.find(parameters) * snap_m_s4)
+    return max(min(_JERK.find(parameters), rate_m_s3, average_m_s3), _JERK_LEAST_M_S3)
 
 
 def _is_airborne(view: AutopilotView, *, rises: bool) -> bool:

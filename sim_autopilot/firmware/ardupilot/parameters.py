@@ -4,12 +4,12 @@ Names, types and defaults: ArduCopter 4.6 parameter reference; ANGLE_MAX, FRAME_
 sets them. Speeds are in cm/s, heights in cm and angles in hundredths of a degree where the firmware has them so.
 """
 
-from math import cos, inf, radians, sin, sqrt
+from math import cos, inf, radians, sin
 
 from link.mavlink.dialect import mavlink
 from link.messages import Vector3
 from sim_autopilot.core.land_settings import DisarmSettings, LandDetectorSettings, LandSettings, PrecisionSettings
-from sim_autopilot.core.limits import AxisGains, Envelope, PathLimits, PositionGains
+from sim_autopilot.core.limits import Envelope
 from sim_autopilot.core.parameters import Parameter, Values
 from sim_autopilot.core.pilot_settings import StickFeel
 from sim_autopilot.core.settings import (
@@ -22,7 +22,7 @@ from sim_autopilot.core.settings import (
 )
 from sim_autopilot.firmware.ardupilot.failsafes import PARAMETERS as FAILSAFE_PARAMETERS
 from sim_autopilot.firmware.ardupilot.failsafes import battery_v, failsafe_settings
-from sim_autopilot.physics.airframe import GRAVITY_M_S2
+from sim_autopilot.firmware.ardupilot.path_control import in_si, path_limits, position_gains
 
 _INT8, _INT16, _INT32 = mavlink.MAV_PARAM_TYPE_INT8, mavlink.MAV_PARAM_TYPE_INT16, mavlink.MAV_PARAM_TYPE_INT32
 _UNLIMITED_M_S = 100.0
@@ -36,10 +36,6 @@ _SLOPE_MIN = 0.5
 _WIND_MAX_M_S = 60.0
 _NO_PILOT = -1.0
 """The throttle stick of the simulated receiver, right down: 1000 us."""
-_LEAST_M_S = 0.1
-"""Speeds and accelerations below a tenth count as that, as the firmware's own lower bounds do roughly."""
-_ATTITUDE_M_S4 = GRAVITY_M_S2 * radians(1100.0)
-"""How fast the jerk can change, by ATC_ACCEL_P_MAX at its default; AC_PosControl bounds its jerk by this."""
 
 
 def _real(name: str, default: float, lowest: float = -1e9, highest: float = 1e9) -> Parameter:
@@ -53,7 +49,11 @@ def _whole(name: str, default: int, kind: int, lowest: float, highest: float) ->
 _OWN = (
     _whole("ANGLE_MAX", 3000, _INT16, 1000, 8000),
     _whole("ARMING_CHECK", 1, _INT32, 0, 2**31 - 1),
+    _real("ATC_ACCEL_P_MAX", 110000.0, 0.0, 180000.0),
+    _real("ATC_ACCEL_R_MAX", 110000.0, 0.0, 180000.0),
     _real("ATC_INPUT_TC", 0.15, 0.0, 1.0),
+    _real("ATC_RATE_P_MAX", 0.0, 0.0, 1080.0),
+    _real("ATC_RATE_R_MAX", 0.0, 0.0, 1080.0),
     _real("ATC_SLEW_YAW", 6000.0, 500.0, 18000.0),
     _whole("DISARM_DELAY", 10, _INT8, 0, 127),
     _whole("FRAME_CLASS", 1, _INT8, 0, 17),
@@ -108,13 +108,9 @@ _OWN = (
 OBEYED = tuple(sorted((*_OWN, *FAILSAFE_PARAMETERS), key=lambda parameter: parameter.name))
 
 
-def _si(values: Values, name: str) -> float:
-    return max(_LEAST_M_S, values[name] / 100.0)
-
-
 def flight_settings(values: Values) -> FlightSettings:
     """Return what the parameters amount to, in SI units."""
-    descent_m_s, acceleration_m_s2 = _si(values, "WPNAV_SPEED_DN"), _si(values, "WPNAV_ACCEL")
+    descent_m_s, acceleration_m_s2 = in_si(values, "WPNAV_SPEED_DN"), in_si(values, "WPNAV_ACCEL")
     delay_s = values["DISARM_DELAY"]
     return FlightSettings(
         envelope=Envelope(
@@ -131,12 +127,12 @@ def flight_settings(values: Values) -> FlightSettings:
             hover_share=min(0.8, max(0.1, values["MOT_THST_HOVER"])),
             thrust_as_thrust=bool(int(values["GUID_OPTIONS"]) & _THRUST_AS_THRUST),
         ),
-        takeoff=TakeoffSettings(spool_up_s=0.0, ramp_s=1.0, climb_m_s=_si(values, "WPNAV_SPEED_UP"), height_m=2.5),
-        travel=TravelSettings(cruise_m_s=_si(values, "WPNAV_SPEED"), reached_m=2.0),  # WPNAV_RADIUS
+        takeoff=TakeoffSettings(spool_up_s=0.0, ramp_s=1.0, climb_m_s=in_si(values, "WPNAV_SPEED_UP"), height_m=2.5),
+        travel=TravelSettings(cruise_m_s=in_si(values, "WPNAV_SPEED"), reached_m=2.0),  # WPNAV_RADIUS
         returning=_return(values),
         land=LandSettings(
-            approach_m_s=_si(values, "LAND_SPEED_HIGH") if values["LAND_SPEED_HIGH"] > 0.0 else descent_m_s,
-            descent_m_s=_si(values, "LAND_SPEED"),
+            approach_m_s=in_si(values, "LAND_SPEED_HIGH") if values["LAND_SPEED_HIGH"] > 0.0 else descent_m_s,
+            descent_m_s=in_si(values, "LAND_SPEED"),
             slow_below_m=values["LAND_ALT_LOW"] / 100.0,
             precision=PrecisionSettings(
                 enabled=values["PLND_ENABLED"] > 0.0 and int(values["PLND_TYPE"]) == _BY_MAVLINK,
@@ -157,44 +153,11 @@ def flight_settings(values: Values) -> FlightSettings:
             after_landing_mode_s=0.1,
             idle_s=delay_s if delay_s > 0.0 else None,
         ),
-        path=PathLimits(
-            speed_m_s=_si(values, "WPNAV_SPEED"),
-            climb_m_s=_si(values, "WPNAV_SPEED_UP"),
-            descent_m_s=descent_m_s,
-            acceleration_m_s2=acceleration_m_s2,
-            vertical_acceleration_m_s2=_si(values, "WPNAV_ACCEL_Z"),
-            jerk_m_s3=min(max(0.1, values["PSC_JERK_XY"]), 0.5 * sqrt(acceleration_m_s2 * _ATTITUDE_M_S4)),
-            vertical_jerk_m_s3=max(0.1, values["PSC_JERK_Z"]),
-            timeout_s=max(0.1, values["GUID_TIMEOUT"]),
-            throttle_slew_s=max(0.25, values["TKOFF_SLEW_TIME"]),
-        ),
-        gains=_gains(values),
+        path=path_limits(values),
+        gains=position_gains(values),
         sticks=_sticks(values),
         failsafes=failsafe_settings(values),
         simulation=SimulationSettings(battery_v=battery_v(values), wind_enu_m_s=_wind(values)),
-    )
-
-
-def _gains(values: Values) -> PositionGains:
-    """Of AC_PosControl. Vertically AC_PosControl integrates an acceleration's error: an observer stands for it."""
-    level = AxisGains(
-        position_per_s=_gain(values, "PSC_POSXY_P"),
-        velocity_per_s=_gain(values, "PSC_VELXY_P"),
-        integral_per_s2=_gain(values, "PSC_VELXY_I"),
-        derivative=max(0.0, min(1.0, values["PSC_VELXY_D"])),
-    )
-    return PositionGains(
-        level=level,
-        vertical=AxisGains(
-            position_per_s=_gain(values, "PSC_POSZ_P"),
-            velocity_per_s=_gain(values, "PSC_VELZ_P"),
-            integral_per_s2=None,
-        ),
-        observer_rad_s=_OBSERVER_RAD_S,
-        derives_error=True,
-        error_cutoff_hz=max(0.1, values["PSC_VELXY_FLTE"]),
-        slope_cutoff_hz=max(0.1, values["PSC_VELXY_FLTD"]),
-        attitude_per_s=1.0 / max(0.05, values["ATC_INPUT_TC"]),
     )
 
 
@@ -203,20 +166,20 @@ def _return(values: Values) -> ReturnSettings:
         height_m=values["RTL_ALT"] / 100.0,
         distance_m=0.0,
         slope=values["RTL_CONE_SLOPE"] if values["RTL_CONE_SLOPE"] >= _SLOPE_MIN else 0.0,
-        speed_m_s=_si(values, "RTL_SPEED") if values["RTL_SPEED"] > 0.0 else None,
+        speed_m_s=in_si(values, "RTL_SPEED") if values["RTL_SPEED"] > 0.0 else None,
         climb_m=values["RTL_CLIMB_MIN"] / 100.0,
         stay_s=values["RTL_LOIT_TIME"] / 1000.0,
     )
 
 
 def _sticks(values: Values) -> StickFeel:
-    climb_m_s = _si(values, "PILOT_SPEED_UP")
+    climb_m_s = in_si(values, "PILOT_SPEED_UP")
     return StickFeel(
-        speed_m_s=_si(values, "LOIT_SPEED"),
+        speed_m_s=in_si(values, "LOIT_SPEED"),
         climb_m_s=climb_m_s,
-        descent_m_s=_si(values, "PILOT_SPEED_DN") if values["PILOT_SPEED_DN"] > 0.0 else climb_m_s,
-        acceleration_m_s2=_si(values, "LOIT_ACC_MAX"),
-        lift_m_s2=_si(values, "PILOT_ACCEL_Z"),
+        descent_m_s=in_si(values, "PILOT_SPEED_DN") if values["PILOT_SPEED_DN"] > 0.0 else climb_m_s,
+        acceleration_m_s2=in_si(values, "LOIT_ACC_MAX"),
+        lift_m_s2=in_si(values, "PILOT_ACCEL_Z"),
         tilt_rad=_tilt_rad(values),
         yaw_rate_rad_s=radians(values["PILOT_Y_RATE"]),
         dead_zone=0.04,  # RC1_DZ, 20 us
@@ -238,11 +201,5 @@ def _tilt_rad(values: Values) -> float:
     return radians(min(80.0, max(10.0, values["ANGLE_MAX"] / 100.0)))
 
 
-_OBSERVER_RAD_S = 1.0
-"""Of what disturbs vertically: PSC_ACCZ_I 1 over PSC_ACCZ_P 0.5 and the thrust itself, by a hover throttle of 0.39."""
 _LANDED_AFTER_S = 1.4
 """From contact to ON_GROUND, as measured: a second of signs, after the filtered acceleration has died away."""
-
-
-def _gain(values: Values, name: str) -> float:
-    return min(10.0, max(0.02, values[name]))

@@ -13,6 +13,8 @@ from companion.autopilots.limits import acceleration_of_tilt_m_s2
 from companion.config.companion import CompanionConfig
 from link.mavlink.dialect import mavlink
 from link.records import replace
+from sim_autopilot.firmware.ardupilot.parameters import OBEYED
+from sim_autopilot.firmware.ardupilot.path_control import path_limits
 from tests.companion.world import START_NS, STEP_NS
 
 DRIVER = ArduPilotDriver()
@@ -166,6 +168,33 @@ def test_jerk_is_no_more_than_the_attitude_controller_allows(acceleration_m_s2: 
         for jerk_m_s3 in (most_m_s3, 20.0)
     )
     assert set_so == pytest.approx(unlimited, rel=0.01)
+
+
+@pytest.mark.parametrize(
+    ("told", "most_m_s3"),
+    [
+        ({"ATC_ACCEL_R_MAX": 20000.0}, 6.5),  # as for propellers of 30 inches
+        ({"ATC_ACC_P_MAX": 200.0}, 6.5),
+        ({"ATC_RATE_P_MAX": 60.0}, 10.3),
+        ({"ATC_RATE_R_MAX": 0.0, "ATC_ACCEL_P_MAX": 0.0}, 15.3),  # none
+        ({"ATC_RATE_R_MAX": 1.0}, 1.0),
+    ],
+)
+def test_jerk_is_no_more_than_slow_turns_of_the_body_leave(told: dict[str, float], most_m_s3: float) -> None:
+    shaping = DRIVER.shaping({"PSC_JERK_XY": 20.0, "WPNAV_ACCEL": 500.0} | told)
+    assert shaping is not None
+    assert shaping.jerk_m_s3 == pytest.approx(most_m_s3, abs=0.05)
+
+
+@pytest.mark.parametrize(
+    "told",
+    [{}, {"ATC_ACCEL_R_MAX": 20000.0}, {"ATC_ACCEL_P_MAX": 50000.0}, {"ATC_RATE_R_MAX": 60.0, "ATC_RATE_P_MAX": 90.0}],
+)
+def test_path_of_the_stand_in_keeps_to_the_jerk_that_is_planned_with(told: dict[str, float]) -> None:
+    values = {one.name: one.default for one in OBEYED} | {"PSC_JERK_XY": 20.0, "WPNAV_ACCEL": 500.0} | told
+    shaping = DRIVER.shaping(values)
+    assert shaping is not None
+    assert path_limits(values).jerk_m_s3 == pytest.approx(shaping.jerk_m_s3)
 
 
 @pytest.mark.parametrize("told", [0.11, 0.3, 0.5])
