@@ -138,7 +138,7 @@ def parse_toml(text: str, source: str) -> dict[str, Any]:
         return tables_of(text)
     except tomllib.TOMLDecodeError as error:
         raise UserError(f"{source}: not valid TOML ({error})") from None
-    except ValueError as error:  # an integer of thousands of digits
+    except ValueError as error:  # what `_check_size` refuses
         raise UserError(f"{source}: not valid TOML ({str(error).partition(';')[0]})") from None
     except RecursionError:
         raise UserError(f"{source}: not valid TOML (nested too deep)") from None
@@ -148,7 +148,7 @@ def tables_of(text: str) -> dict[str, Any]:
     """Return the tables of TOML.
 
     Raises:
-        ValueError: it is none, or has an integer of thousands of digits.
+        ValueError: it is none, or has an integer of thousands of digits or a text with a NUL character.
         RecursionError: it is nested deeper than any configuration.
     """
     table = tomllib.loads(text)
@@ -157,11 +157,13 @@ def tables_of(text: str) -> dict[str, Any]:
 
 
 def _check_size(value: object, levels: int) -> None:
-    """Find out whether `value` has at most so many levels, and no integer that could not be printed."""
+    """Find out whether `value` has at most so many levels, and nothing that no text or file's name can hold."""
     if levels < 0:
         raise RecursionError
     if isinstance(value, int):
         str(value)
+    if isinstance(value, str) and "\0" in value:
+        raise ValueError("a text has a NUL character")
     below = value.values() if isinstance(value, dict) else value if isinstance(value, list) else ()
     for one in below:
         _check_size(one, levels - 1)

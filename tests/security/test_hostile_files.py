@@ -156,6 +156,11 @@ def test_integer_of_thousands_of_digits_is_one_line() -> None:
         parse_toml(f"a = {'9' * 6000}", "scenario.toml")
 
 
+def test_text_that_no_file_can_be_called_is_one_line() -> None:
+    with pytest.raises(UserError, match=r"companion\.toml: not valid TOML \(a text has a NUL character\)"):
+        parse_toml('[recording]\nfolder = "a\\u0000b"', "companion.toml")
+
+
 def test_calibration_that_is_nested_without_end_is_one_line(tmp_path: Path) -> None:
     path = tmp_path / "camera.yaml"
     path.write_text(DEEP[:20_000], encoding="utf-8")
