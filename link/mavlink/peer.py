@@ -51,10 +51,14 @@ def is_request(message: Message, own: Address) -> bool:
     return kind in _TO_ALL and own.is_meant_by(message)
 
 
+def is_beat(message: Message) -> bool:
+    """Whether a message is a heartbeat, anybody's."""
+    return bool(message.get_msgId() == mavlink.MAVLINK_MSG_ID_HEARTBEAT)
+
+
 def is_beat_of(message: Message, address: Address) -> bool:
     """Whether a message is the heartbeat of `address`."""
-    source = Address(message.get_srcSystem(), message.get_srcComponent())
-    return message.get_msgId() == mavlink.MAVLINK_MSG_ID_HEARTBEAT and source == address
+    return is_beat(message) and Address(message.get_srcSystem(), message.get_srcComponent()) == address
 
 
 class Peer:
@@ -84,6 +88,8 @@ class Peer:
             self._requests.append(message)
         if self.target_system_id is None:
             return is_autopilot_heartbeat(message)
+        if is_beat(message) and message.autopilot == mavlink.MAV_AUTOPILOT_INVALID:
+            return False  # of something that was left at the autopilot's address, which is many a library's default
         if message.get_srcSystem() != self.target_system_id and is_autopilot_heartbeat(message):
             self.others.add(message.get_srcSystem())
         return bool(
@@ -217,7 +223,7 @@ def companion_heartbeat(status: int = mavlink.MAV_STATE_ACTIVE, mode: int = 0) -
 def is_autopilot_heartbeat(message: Message) -> bool:
     """Whether a message is the heartbeat of an autopilot, not of a ground station, gimbal or companion."""
     return bool(
-        message.get_msgId() == mavlink.MAVLINK_MSG_ID_HEARTBEAT
+        is_beat(message)
         and message.get_srcComponent() == AUTOPILOT_COMPONENT_ID
         and message.autopilot != mavlink.MAV_AUTOPILOT_INVALID
     )

@@ -71,6 +71,16 @@ def test_ground_stations_and_companions_are_not_adopted() -> None:
     assert session.statistics.filtered_messages == 3
 
 
+def test_what_is_no_autopilot_at_the_autopilots_address_tells_no_mode() -> None:
+    session = MavlinkSession(1)
+    autopilot, gimbal = MavlinkCodec(1, 1), MavlinkCodec(1, 1)
+    beat = heartbeat(mavlink.MAV_TYPE_QUADROTOR, mavlink.MAV_AUTOPILOT_PX4)
+    stray = heartbeat(mavlink.MAV_TYPE_GIMBAL, mavlink.MAV_AUTOPILOT_INVALID)
+    assert of_kind(session.receive(autopilot.encode(beat), START_NS), MessageReceived)
+    assert session.receive(gimbal.encode(stray), START_NS) == []
+    assert session.vehicle_type == mavlink.MAV_TYPE_QUADROTOR
+
+
 def test_only_the_chosen_system_is_heard() -> None:
     session = MavlinkSession(4, target_system_id=4)
     beat = heartbeat(mavlink.MAV_TYPE_QUADROTOR, mavlink.MAV_AUTOPILOT_PX4)
