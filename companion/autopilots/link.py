@@ -4,6 +4,7 @@ from collections.abc import Mapping
 
 from companion.autopilots.choice import driver_for
 from companion.autopilots.driver import AutopilotCommand, AutopilotView, Driver, gives_up_after_s, streams_hz
+from companion.autopilots.geoid import Geoid
 from companion.autopilots.heartbeat import with_acknowledgement
 from companion.autopilots.late_reports import LateReports
 from companion.autopilots.limits import LimitQuestions
@@ -52,7 +53,7 @@ class AutopilotLink:
         self.session = session
         self._config = config
         self._motion_rate_hz = motion_rate_hz
-        self.state = AutopilotState(geoid_height_m=config.geoid_height_m)
+        self.state = AutopilotState(geoid=Geoid(height_m=config.geoid_height_m))
         self.driver: Driver | None = None
         self.setpoints = SentSetpoints(session)
         self._acknowledgements: list[tuple[int, int]] = []
@@ -192,8 +193,8 @@ class AutopilotLink:
         view = AutopilotView(
             link_up=True, armed=False, in_control=False, failsafe=False, restarted=True, frame_moves=moves
         )
-        parameters, geoid_m = self.state.parameters, self._config.geoid_height_m
-        self.state = AutopilotState(view=view, parameters=parameters, geoid_height_m=geoid_m)
+        geoid = Geoid(height_m=self._config.geoid_height_m)
+        self.state = AutopilotState(view=view, parameters=self.state.parameters, geoid=geoid)
         self._origin_asked_ns = None
         self._questions.ask_all()
         self.pilot_switch.forget()

@@ -8,6 +8,7 @@ from msgspec import Struct, field
 
 from companion.autopilots.driver import NO_AUTOPILOT, AutopilotView, Driver
 from companion.autopilots.frame_moves import after_origin, has_stepped_with
+from companion.autopilots.geoid import Geoid, hear_geoid
 from companion.autopilots.heartbeat import with_heartbeat, with_landed_state, with_mode
 from companion.autopilots.own_reports import (
     HISTORY_NS,
@@ -19,7 +20,6 @@ from companion.autopilots.own_reports import (
 )
 from companion.autopilots.sensor_reports import (
     above_ellipsoid,
-    geoid_height_m,
     is_same,
     origin_above_sea,
     with_fix,
@@ -50,8 +50,7 @@ class AutopilotState(Struct, frozen=True, kw_only=True):
         origin_msl: the origin with its altitude above mean sea level, as it is sent.
         origin_doubted_msl: another one, told once; a single message may be anybody's.
         doubted_ns: of the drone's newest report then; with its origin it steps in the next.
-        geoid_height_m: of mean sea level above the ellipsoid, None until the autopilot's receiver tells it.
-        geoid_doubted_m: another one, told once.
+        geoid: what the autopilot's receiver has told of it.
         parameters: those read, by name.
         texts: what it said and nobody has taken yet.
     """
@@ -64,8 +63,7 @@ class AutopilotState(Struct, frozen=True, kw_only=True):
     origin_msl: Datum | None = None
     origin_doubted_msl: Datum | None = None
     doubted_ns: int = 0
-    geoid_height_m: float | None = None
-    geoid_doubted_m: float | None = None
+    geoid: Geoid = Geoid()
     parameters: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
     texts: tuple[str, ...] = ()
 
@@ -110,8 +108,6 @@ def update_state(state: AutopilotState, message: Message, clock: ClockMap, drive
             state = replace(state, view=with_sensor(state.view, message, clock, state.own_at))
         case "STATUSTEXT" | "EVENT":
             state = _said(state, message, driver)
-        case _:
-            pass
     return state
 
 
@@ -165,8 +161,7 @@ def _add_report(state: AutopilotState, own: OwnState) -> AutopilotState:
     state = replace(state, history=history)
     if moves is state.view.frame_moves:
         return state
-    seen = state.view.range_down
-    seen = None if seen is None else replace(seen, own=None)
+    seen = None if state.view.range_down is None else replace(state.view.range_down, own=None)
     state = replace(state, view=replace(state.view, frame_moves=moves, range_down=seen))
     doubted, frame = state.origin_doubted_msl, state.view.frame
     if doubted is None or frame is None or not _has_stepped_along(state, doubted):
@@ -223,23 +218,29 @@ def _has_stepped_along(state: AutopilotState, told: Datum) -> bool:
 
 
 def _hear_geoid(state: AutopilotState, message: Message) -> AutopilotState:
-    """Take the geoid's first height, and another one that is told twice in a row: with it the local frame moves."""
-    known_m, doubted_m = state.geoid_height_m, state.geoid_doubted_m
-    told_m = geoid_height_m(known_m, message)
-    if told_m is None or known_m is None or told_m == known_m:
-        return replace(state, geoid_height_m=told_m, geoid_doubted_m=None)
-    if doubted_m is None or geoid_height_m(doubted_m, message) != doubted_m:
-        return replace(state, geoid_doubted_m=told_m)
-    return replace(state, geoid_height_m=told_m, geoid_doubted_m=None)
+    """Take the geoid's first height, and another one that is told twice in a row: with it the local frame moves.
+
+    Nothing moves the geoid under a drone that flies. There a sure one is kept, unless the drone's own height has
+    stepped along, as to another receiver's: by another one the pad would be metres lower than it is.
+    """
+    geoid, other = hear_geoid(state.geoid, message)
+    if other is not None and (not (state.view.armed and geoid.is_sure) or _has_risen(state, other.above(geoid))):
+        geoid = other
+    return replace(state, geoid=geoid)
+
+
+def _has_risen(state: AutopilotState, by_m: float) -> bool:
+    origin = state.origin_msl
+    return origin is not None and _has_stepped_along(state, replace(origin, altitude_m=origin.altitude_m + by_m))
 
 
 def _place_origin(state: AutopilotState, projection: Projection) -> AutopilotState:
     """Put the origin above the ellipsoid; with another one the local frame has moved."""
     if state.origin_msl is None:
         return state
-    origin = above_ellipsoid(state.origin_msl, state.geoid_height_m)
+    origin = above_ellipsoid(state.origin_msl, state.geoid.height_m)
     known, moves = state.view.frame, state.view.frame_moves
-    receiver = replace(state.view.receiver, knows_geoid=state.geoid_height_m is not None)
+    receiver = replace(state.view.receiver, knows_geoid=state.geoid.height_m is not None)
     if known is not None and known.projection is projection and is_same(origin, known.origin):
         return replace(state, view=replace(state.view, receiver=receiver))
     frame = LocalFrame(origin=origin, projection=projection)

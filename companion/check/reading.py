@@ -3,7 +3,8 @@
 import statistics
 from collections import Counter, deque
 
-from companion.autopilots.sensor_reports import battery_share, geoid_height_m, is_of_first_battery, looks_down
+from companion.autopilots.geoid import geoid_height_m
+from companion.autopilots.sensor_reports import battery_share, is_of_first_battery, looks_down
 from companion.check.assessment import MOTION
 from companion.check.firmwares import FIRMWARES
 from companion.check.observation import AutopilotFacts

@@ -71,5 +71,5 @@ def _above_sea(pad: PadPath, state: AutopilotState) -> tuple[int, int, float] | 
         return None
     x, y, z = pad.position_enu_m[0].tolist()
     latitude_rad, longitude_rad, altitude_m = geodetic_from_local(frame, (x, y, z))
-    above_sea_m = altitude_m - (state.geoid_height_m or 0.0)
+    above_sea_m = altitude_m - (state.geoid.height_m or 0.0)
     return round(math.degrees(latitude_rad) * 1e7), round(math.degrees(longitude_rad) * 1e7), above_sea_m

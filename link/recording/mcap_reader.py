@@ -147,6 +147,8 @@ def _text(path: Path, attachment: Attachment) -> str:
 
 def _records(path: Path) -> Iterator[object]:
     """Return the records of a file; one that breaks off ends there."""
+    if path.is_fifo():
+        raise UserError(_damaged(path, "it is a pipe"))  # which would be waited for without an end
     try:
         with path.open("rb") as file:
             stream: Any = _BoundedFile(file, path.stat().st_size)

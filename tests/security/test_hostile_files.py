@@ -1,5 +1,6 @@
 """Files that somebody else made: what cannot be read is one line, and nothing in them says how much memory is taken."""
 
+import os
 import struct
 from collections.abc import Callable
 from contextlib import suppress
@@ -90,6 +91,13 @@ def test_recording_that_makes_no_sense_is_one_line(tmp_path: Path, data: bytes) 
         read(path)
     assert str(caught.value).startswith(str(path))
     assert "\n" not in str(caught.value)
+
+
+def test_recording_that_is_a_pipe_is_one_line_and_nobody_waits_for_it(tmp_path: Path) -> None:
+    path = tmp_path / "companion_000.mcap"
+    os.mkfifo(path)
+    with pytest.raises(UserError, match=r"companion_000\.mcap: .* \(it is a pipe\)"):
+        read_head(path)
 
 
 def test_gigabyte_in_a_few_kilobytes_is_not_unpacked(tmp_path: Path) -> None:

@@ -283,6 +283,44 @@ def test_later_geoid_height_counts_when_it_is_told_again() -> None:
     assert twice.view.frame.origin.altitude_m == pytest.approx(401.7)
 
 
+def _beat(base_mode: int) -> Message:
+    return mavlink.MAVLink_heartbeat_message(2, 12, base_mode, 0x0006_0000, 4, 3)
+
+
+def _flying_with_geoid(*told_mm: int) -> AutopilotState:
+    """An armed drone 10 m above its origin whose receiver has told these heights of the geoid."""
+    receivers = [_receiver(3, 410_000, 410_000 + geoid_mm) for geoid_mm in told_mm]
+    return _hear(_beat(217), _origin(475_000_000, 80_000_000, 400_000), *receivers, *_hover(0, 10.0))
+
+
+def _hover(since_ms: int, height_m: float) -> list[Message]:
+    return [LEVEL, *(_at(since_ms + 20 * number, (0.0, 0.0, -height_m)) for number in range(1, 6))]
+
+
+def _origin_altitude_m(state: AutopilotState) -> float:
+    assert state.view.frame is not None
+    return state.view.frame.origin.altitude_m
+
+
+def test_sure_geoid_height_is_kept_while_the_drone_flies() -> None:
+    state = _hear(*10 * [_receiver(3, 410_000, 413_600)], state=_flying_with_geoid(600, 600))
+    assert _origin_altitude_m(state) == pytest.approx(400.6)
+    disarmed = _hear(*2 * [_beat(29)], _receiver(3, 410_000, 413_600), state=state)
+    assert _origin_altitude_m(disarmed) == pytest.approx(403.6)
+
+
+def test_geoid_height_that_was_told_once_before_is_replaced_in_flight() -> None:
+    state = _hear(*2 * [_receiver(3, 410_000, 413_600)], state=_flying_with_geoid(600))
+    assert _origin_altitude_m(state) == pytest.approx(403.6)
+
+
+def test_geoid_height_with_which_the_drones_own_has_stepped_counts_in_flight() -> None:
+    stepped = _hear(*_hover(100, 7.0), state=_flying_with_geoid(600, 600))
+    state = _hear(*2 * [_receiver(3, 407_000, 410_600)], state=stepped)
+    assert _origin_altitude_m(state) == pytest.approx(403.6)
+    assert state.view.frame_moves.origin_count == stepped.view.frame_moves.origin_count
+
+
 @pytest.mark.parametrize(("fix", "is_fixed"), [(3, False), (5, False), (6, True)])
 def test_receiver_tells_whether_its_phases_are_fixed(fix: int, *, is_fixed: bool) -> None:
     state = _hear(_receiver(fix, 410_000, 457_300))
