@@ -14,6 +14,8 @@ from scenarios.vehicle_sources.receiver import drop_implausible
 NANOSECONDS_PER_DAY = 86_400 * 10**9
 _SECOND_MAX = 60  # a leap second
 _DIGITS_NS = 9
+_YEAR_DIGITS = 4
+_DEGREE_DIGITS = 3
 
 
 class Sentence(NamedTuple):
@@ -72,9 +74,14 @@ def date_of(sentence: Sentence) -> int | None:
         parts = (text[:2], text[2:4], "20" + text[4:]) if len(text) == 6 else ("", "", "")
     else:
         parts = (sentence.text(1), sentence.text(2), sentence.text(3))
-    if not all(part.isdigit() for part in parts):
+    if not all(_is_whole(part, _YEAR_DIGITS) for part in parts):
         return None
     return day_ns(int(parts[2]), int(parts[1]), int(parts[0]))
+
+
+def _is_whole(text: str, digits_max: int) -> bool:
+    """Return whether a text is a whole number of so many digits at most; a longer one is none that is meant."""
+    return text.isdigit() and len(text) <= digits_max
 
 
 def angle_rad(value: str, hemisphere: str) -> float | None:
@@ -82,7 +89,9 @@ def angle_rad(value: str, hemisphere: str) -> float | None:
     point = value.find(".") if "." in value else len(value)
     whole, minutes = value[: max(point - 2, 0)], value[max(point - 2, 0) :]
     largest = 90 if hemisphere in ("N", "S") else 180
-    if hemisphere not in ("N", "S", "E", "W") or not whole.isdigit() or not minutes.replace(".", "", 1).isdigit():
+    if hemisphere not in ("N", "S", "E", "W") or not _is_whole(whole, _DEGREE_DIGITS):
+        return None
+    if not minutes.replace(".", "", 1).isdigit():
         return None
     degrees = int(whole) + float(minutes) / 60.0
     if degrees > largest or float(minutes) >= 60.0:

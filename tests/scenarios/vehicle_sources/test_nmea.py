@@ -194,3 +194,23 @@ def test_no_bytes_whatever_make_it_raise(data: bytes) -> None:
     fields = data.decode("latin-1").replace("*", "").replace("$", "").replace("\r", "").replace("\n", "")
     ascii_fields = fields.encode("ascii", "ignore").decode()
     receiver.take(b"".join(sentence(f"GN{kind},{ascii_fields}") for kind in ("GGA", "RMC", "GST", "ZDA", "HDT")), 0)
+
+
+_ODD = ("", "nan", "inf", "1e308", "-1", "1_0", "240000.00", "9" * 12, "9" * 400, "9" * 5000, "." + "9" * 400)
+
+
+@given(st.lists(st.tuples(st.integers(0, 15), st.integers(1, 11), st.sampled_from(_ODD)), min_size=1, max_size=4))
+def test_no_field_of_a_whole_sentence_makes_it_raise(changes: list[tuple[int, int, str]]) -> None:
+    bodies = [line[1:].decode().partition("*")[0] for line in drive(3).splitlines()]
+    bodies += ["GPZDA,120000.00,09,11,2026,00,00", "GPVTG,77.5,T,,M,9.7,N,18,K,A"]
+    for which, place, text in changes:
+        fields = bodies[which % len(bodies)].split(",")
+        fields[place % len(fields) or 1] = text
+        bodies[which % len(bodies)] = ",".join(fields)
+    read(*map(sentence, bodies))
+
+
+def test_day_and_angle_of_more_digits_than_they_have_are_none() -> None:
+    for body in (f"GPZDA,120000.00,{'9' * 12},11,2026,00,00", f"GPZDA,120000.00,09,11,{'9' * 5000},00,00"):
+        assert read(sentence(body)) == []
+    assert angle_rad("9" * 400, "E") is None
