@@ -8,6 +8,7 @@ from enum import Enum
 from pathlib import Path
 
 from link.errors import UserError
+from link.program.text import read_bounded
 from link.program.whole_file import replace_file
 
 
@@ -87,7 +88,7 @@ def read_kept(path: Path) -> dict[str, float]:
         UserError: the file cannot be read, or holds something else.
     """
     try:
-        values = json.loads(path.read_text(encoding="utf-8"))
+        values = json.loads(read_bounded(path))
     except OSError as error:
         raise UserError(f"{path}: cannot be read ({error.strerror}); name the file that --write kept") from error
     except (ValueError, RecursionError) as error:

@@ -16,6 +16,20 @@ _BYTES_MAX = 4 << 20
 """The longest of our own configurations has 20 kB; a device such as /dev/zero has no end."""
 
 
+def read_bounded(path: Path, bytes_max: int = _BYTES_MAX) -> bytes:
+    """Return a file's bytes.
+
+    Raises:
+        OSError: it cannot be read.
+        ValueError: it is larger.
+    """
+    with path.open("rb") as file:
+        data = file.read(bytes_max + 1)
+    if len(data) > bytes_max:
+        raise ValueError(f"it is larger than {bytes_max} bytes, which no such file is")
+    return data
+
+
 def read_text(path: Path) -> str:
     """Return a file's text; a byte order mark, as Windows' editors set one, is left out.
 
@@ -23,13 +37,10 @@ def read_text(path: Path) -> str:
         UserError: it cannot be read, is too large or no UTF-8.
     """
     try:
-        with path.open("rb") as file:
-            data = file.read(_BYTES_MAX + 1)
+        return read_bounded(path).decode("utf-8-sig")
     except OSError as error:
         raise UserError(f"{path}: cannot be read ({error.strerror})") from None
-    if len(data) > _BYTES_MAX:
-        raise UserError(f"{path}: larger than {_BYTES_MAX >> 20} MB, which no such file is")
-    try:
-        return data.decode("utf-8-sig")
     except UnicodeDecodeError:
         raise UserError(f"{path}: not UTF-8 text") from None
+    except ValueError:
+        raise UserError(f"{path}: larger than {_BYTES_MAX >> 20} MB, which no such file is") from None

@@ -17,6 +17,7 @@ from cryptography.hazmat.primitives.asymmetric import ec
 from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID
 
 from link.errors import UserError
+from link.program.text import read_bounded
 
 AUTHORITY = "ca"
 _HOST_NAME = re.compile(r"[A-Za-z0-9_.*-]+")
@@ -41,8 +42,8 @@ class Authority:
         try:
             folder.mkdir(mode=0o700, parents=True, exist_ok=True)
             if certificate.exists() and key.exists():
-                self._certificate = x509.load_pem_x509_certificate(certificate.read_bytes())
-                self._key = _ec_key(key.read_bytes())
+                self._certificate = x509.load_pem_x509_certificate(read_bounded(certificate))
+                self._key = _ec_key(read_bounded(key))
                 return
         except OSError as error:
             raise UserError(f"{folder}: cannot be used ({error.strerror}); choose another folder") from error

@@ -9,7 +9,7 @@ from typing import TypedDict
 import zenoh
 
 from link.errors import UserError
-from link.program.text import read_text
+from link.program.text import read_bounded, read_text
 from link.zenoh.exposure import check_exposure, openings_of
 from link.zenoh.options import DEFAULT_ENDPOINT, ZenohOptions
 from link.zenoh.unmet import TlsFiles, why_unmet
@@ -158,7 +158,7 @@ def _check_tls_files(config: zenoh.Config, config_file: Path | None) -> None:
         if not isinstance(path, str) or not path or not ways.get(way, any(ways.values())):
             continue
         try:
-            Path(path).read_bytes()
+            read_bounded(Path(path))
         except (OSError, ValueError) as error:
             why = error.strerror if isinstance(error, OSError) else error
             raise UserError(

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from link.errors import UserError
+from link.program.text import read_bounded
 from link.program.toml_config import validate
 from scenarios.campaigns.landing_task import Flown, Row, Task
 from scenarios.campaigns.landings_file import as_written, read_rows, write_rows
@@ -50,7 +51,7 @@ def read_plan(folder: Path) -> Plan:
     """
     path = folder / _PLAN
     try:
-        table = json.loads(path.read_text(encoding="utf-8"))
+        table = json.loads(read_bounded(path))
     except OSError as error:
         raise UserError(f"{path}: cannot be read ({error.strerror}); is this a campaign's folder?") from None
     except (ValueError, RecursionError):

@@ -20,6 +20,7 @@ from link.messages import BodyTruth
 from link.payloads import cdr
 from link.payloads.checks import PayloadError
 from link.payloads.decklander_msgs import fields_of
+from link.program.text import read_bounded
 from link.program.toml_config import parse_toml, validate
 from link.recording.mcap_reader import RecordingHead, read_head, read_messages, recording_files
 from link.units import NS_PER_S
@@ -114,7 +115,7 @@ def read_result(path: Path) -> dict[str, Any]:
         UserError: it cannot be read, or is no result.
     """
     try:
-        table = json.loads(path.read_text(encoding="utf-8"))
+        table = json.loads(read_bounded(path))
     except (OSError, ValueError, RecursionError):
         raise UserError(f"{path}: cannot be read; is this the folder of a run that ended?") from None
     if not isinstance(table, dict):

@@ -14,8 +14,10 @@ from hypothesis import strategies as st
 from mcap.opcode import Opcode
 from mcap.writer import CompressionType, Writer
 
+from companion.check.findings import read_kept
 from companion.eyes.calibration import load_calibration
 from link.errors import UserError
+from link.mavlink.signing import read_key
 from link.program.toml_config import parse_toml, read_toml
 from link.recording.mcap_reader import read_head, read_messages
 from scenarios.campaigns.folder import read_landings, read_plan
@@ -157,6 +159,18 @@ def test_file_without_an_end_is_one_line() -> None:
     for read_it in (read_toml, load_calibration):
         with pytest.raises(UserError, match=r"/dev/zero: larger than 4 MB"):
             read_it(Path("/dev/zero"))
+
+
+@pytest.mark.parametrize("read_it", [read_key, read_kept, read_result])
+def test_file_without_an_end_holds_nothing_that_is_looked_for(read_it: Callable[[Path], object]) -> None:
+    with pytest.raises(UserError, match=r"^/dev/zero: "):
+        read_it(Path("/dev/zero"))
+
+
+def test_campaign_whose_plan_has_no_end_is_one_line(tmp_path: Path) -> None:
+    (tmp_path / "campaign.json").symlink_to("/dev/zero")
+    with pytest.raises(UserError, match=r"campaign\.json: not valid JSON"):
+        read_plan(tmp_path)
 
 
 def test_integer_of_thousands_of_digits_is_one_line() -> None:
