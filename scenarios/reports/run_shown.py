@@ -20,9 +20,14 @@ _BEFORE_S = 3.0  # of the wait before the chase that is shown
 
 
 def landing_window(run: RunData) -> tuple[float, float]:
-    """Return from when to when the landing is shown: from shortly before the first chase to the end."""
+    """Return from when to when the landing is shown: from shortly before the first chase to the end.
+
+    A truth that was broken off before that is shown from its beginning.
+    """
+    end_s = float(run.t_s[-1])
     flown = [span.from_s for span in run.phases if span.phase in FLOWN]
-    return max((min(flown) if flown else 0.0) - _BEFORE_S, 0.0), float(run.t_s[-1])
+    from_s = max((min(flown) if flown else 0.0) - _BEFORE_S, 0.0)
+    return (from_s if from_s < end_s else 0.0), end_s
 
 
 def heights(run: RunData) -> Array:

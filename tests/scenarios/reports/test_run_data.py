@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from link.errors import UserError
-from scenarios.reports.run_data import read_result
-from scenarios.reports.run_shown import contact_index
+from scenarios.reports.run_data import PhaseSpan, read_result
+from scenarios.reports.run_shown import contact_index, is_shown
 
 APPROACH = {
     "from_s": 15.1,
@@ -54,3 +54,12 @@ def test_contact_after_the_end_of_a_truth_that_was_broken_off_is_not_drawn() -> 
     assert contact_index(run) is None
     run.result["contact_s"] = 0.2
     assert contact_index(run) == 2
+
+
+@pytest.mark.parametrize(("end_s", "shown_from_s"), [(20.0, 12.0), (12.5, 12.0), (12.0, 0.0), (4.0, 0.0)])
+def test_truth_that_was_broken_off_before_the_landing_is_shown_from_its_beginning(
+    end_s: float, shown_from_s: float
+) -> None:
+    chase = PhaseSpan(phase="chase", reason="", from_s=15.0, to_s=18.0)
+    run: Any = SimpleNamespace(t_s=np.arange(0.0, end_s + 0.25, 0.5), phases=(chase,))
+    assert run.t_s[is_shown(run)][0] == shown_from_s
