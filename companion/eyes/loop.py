@@ -4,6 +4,7 @@ import signal
 import time
 from enum import Enum
 
+import numpy as np
 from msgspec import Struct
 
 from companion.eyes.node import EyesNode
@@ -17,12 +18,17 @@ from link.program.clock import spare_present_objects
 from link.program.service import Service
 from link.recording.log import Log
 from link.recording.recorder import Recorder
+from link.units import NS_PER_S
 from link.zenoh.keys import Keys
 from link.zenoh.pad_question import PadQuestion
 from link.zenoh.session import ZenohSession
 
 STOPPED_NS = 400_000_000  # with a turn of the loop half a second
-_STEP = 16  # every so many pixels are compared: the noise of a living sensor changes some of them each time
+
+BEGIN_MAX_NS = 5_000_000_000
+"""From opening a camera to its first picture. Some set their exposure first, and a stream waits for a whole picture."""
+_GAPS = 2
+_SLOW_NS = 250_000_000  # from one picture to the next: clearly fewer than the five a second of `companion check`
 
 
 class Failure(Enum):
@@ -33,31 +39,49 @@ class Failure(Enum):
 
 
 class CameraWatch(Struct, frozen=True, kw_only=True):
-    """When the last frame came and when the picture changed last, on a monotonic clock, and its samples."""
+    """When the last frame came and when the picture changed last, on a monotonic clock, and that picture's shades.
+
+    `gaps_ns` are the last two from one frame to the next; the shorter one is the camera's own, an outage is the other.
+    """
 
     came_ns: int
     changed_ns: int
-    samples: bytes = b""
+    shades: Gray | None = None
+    gaps_ns: tuple[int, ...] = ()
+
+    @property
+    def period_ns(self) -> int | None:
+        """From one frame to the next, None while too few have come."""
+        return min(self.gaps_ns) if len(self.gaps_ns) == _GAPS else None
 
 
 def note_frame(watch: CameraWatch, shades: Gray, now_ns: int) -> CameraWatch:
     """Return the watch after a frame that came at `now_ns`."""
-    samples = shades[::_STEP, ::_STEP].tobytes()
-    changed_ns = watch.changed_ns if samples == watch.samples else now_ns
-    return CameraWatch(came_ns=now_ns, changed_ns=changed_ns, samples=samples)
+    gaps_ns = () if watch.shades is None else (*watch.gaps_ns, now_ns - watch.came_ns)[-_GAPS:]
+    changed_ns = watch.changed_ns if is_repeated(watch, shades) else now_ns
+    return CameraWatch(came_ns=now_ns, changed_ns=changed_ns, shades=shades, gaps_ns=gaps_ns)
+
+
+def is_repeated(watch: CameraWatch, shades: Gray) -> bool:
+    """Return whether a picture is the last one again: the noise of a living sensor changes some pixels each time.
+
+    Its stamp is new and what it shows is old: the pad would be reported to move with the drone.
+    """
+    return watch.shades is not None and np.array_equal(watch.shades, shades)
 
 
 def failure_of(watch: CameraWatch, now_ns: int) -> Failure | None:
-    """Return what is wrong at `now_ns`, None for nothing."""
-    if now_ns - watch.came_ns >= STOPPED_NS:
+    """Return what is wrong at `now_ns`, None for nothing; a slow camera fails once two of its frames are missing."""
+    limit_ns = STOPPED_NS
+    if watch.shades is not None:
+        limit_ns = BEGIN_MAX_NS if watch.period_ns is None else max(STOPPED_NS, 2 * watch.period_ns)
+    if now_ns - watch.came_ns >= limit_ns:
         return Failure.STOPPED
-    return Failure.FROZEN if now_ns - watch.changed_ns >= STOPPED_NS else None
+    return Failure.FROZEN if now_ns - watch.changed_ns >= limit_ns else None
 
 
 _WAIT_S = 0.05
 _TRY_AGAIN_NS = 1_000_000_000  # after one that could not be opened
-_BEGIN_MAX_NS = 5_000_000_000
-"""From opening a camera to its first picture. Some set their exposure first, and a stream waits for a whole picture."""
 _OWN = "own"
 
 
@@ -92,6 +116,7 @@ class EyesLoop:
         self._view_encoding = cdr.encoding_of(CompressedPicture)
         self._pad_question = PadQuestion(zenoh, keys.pad)
         self._failed: Failure | None = None
+        self._has_told_slow = False
         self._refused_why: str | None = None
         self._restart_due_ns = 0
         self._recorder = recorder
@@ -113,7 +138,7 @@ class EyesLoop:
         self._log.info("ready", source=self._source.name)
         self._service.ready()
         now_ns = time.monotonic_ns()
-        self._restart_due_ns = now_ns + _BEGIN_MAX_NS
+        self._restart_due_ns = now_ns + BEGIN_MAX_NS
         watch = CameraWatch(came_ns=now_ns, changed_ns=now_ns)
         while not self._stopping and not self._source.has_ended():
             watch = self._turn(watch)
@@ -135,11 +160,9 @@ class EyesLoop:
         now_ns = time.monotonic_ns()
         self._service.alive(now_ns)
         if captured is not None:
+            if not (self._source.is_live and is_repeated(watch, captured.shades)):
+                self._look(captured, now_ns)
             watch = note_frame(watch, captured.shades, now_ns)
-            shows = self._zenoh.is_heard(self._keys.pad_view, self._view_encoding)
-            for publication in self._node.look(captured, shows=shows):
-                self._zenoh.publish(publication.key, publication.payload, publication.encoding)
-            self._record(captured, now_ns)
         self._tell_refused()
         for line in self._node.take_news():
             self._log.info(line)
@@ -147,6 +170,12 @@ class EyesLoop:
         if pad is not None:
             self._node.receive_pad(pad)
         return self._look_after(watch, now_ns) if self._source.is_live else watch
+
+    def _look(self, captured: Captured, now_ns: int) -> None:
+        shows = self._zenoh.is_heard(self._keys.pad_view, self._view_encoding)
+        for publication in self._node.look(captured, shows=shows):
+            self._zenoh.publish(publication.key, publication.payload, publication.encoding)
+        self._record(captured, now_ns)
 
     def _tell_refused(self) -> None:
         """Say of what came and was no picture why, once for each reason."""
@@ -160,6 +189,18 @@ class EyesLoop:
             self._recorded_ns = now_ns
             self._recorder.put(PictureRecord(captured=captured, drawing=self._node.drawing()))
 
+    def _tell_slow(self, watch: CameraWatch) -> None:
+        """Say once that pictures come, or are worked off, so seldom that the pad moves far from one to the next."""
+        period_ns = watch.period_ns
+        if period_ns is None or period_ns < _SLOW_NS or self._has_told_slow:
+            return
+        self._has_told_slow = True
+        self._log.warning(
+            "slow pictures",
+            rate_hz=round(NS_PER_S / period_ns, 1),
+            why="five a second or more are needed: set the camera's rate, use smaller pictures or more light",
+        )
+
     def _look_after(self, watch: CameraWatch, now_ns: int) -> CameraWatch:
         """Say when the camera fails and when it is back, and start it again; one just started is left time to begin."""
         failure = failure_of(watch, now_ns)
@@ -169,12 +210,13 @@ class EyesLoop:
             else:
                 self._log.warning("camera failed", source=self._source.name, why=failure.value)
             self._failed = failure
-        if failure is None and watch.samples:  # it gives pictures: if it stops, it is started again at once
+        self._tell_slow(watch)
+        if failure is None and watch.shades is not None:  # it gives pictures: if it stops, it is started again at once
             self._restart_due_ns = now_ns
         elif failure is not None and now_ns >= self._restart_due_ns:
             try:
                 self._source.restart()
-                self._restart_due_ns = time.monotonic_ns() + _BEGIN_MAX_NS
+                self._restart_due_ns = time.monotonic_ns() + BEGIN_MAX_NS
             except UserError as error:
                 self._log.warning("camera cannot be started", why=str(error))
                 self._restart_due_ns = time.monotonic_ns() + _TRY_AGAIN_NS

@@ -136,7 +136,10 @@ def test_frames_have_the_date_that_the_computer_got_after_the_start(monkeypatch:
 def test_a_camera_that_stops_and_one_that_freezes_are_told_within_half_a_second() -> None:
     other = SHADES.copy()
     other[0, 0] ^= 1
-    watch = note_frame(CameraWatch(came_ns=0, changed_ns=0), SHADES, 10)
+    watch = CameraWatch(came_ns=0, changed_ns=0)
+    for now_ns in (2, 6, 10):
+        watch = note_frame(watch, SHADES, now_ns)
+    watch = replace(watch, changed_ns=10)
     assert failure_of(watch, STOPPED_NS) is None
     assert failure_of(watch, STOPPED_NS + 10) is Failure.STOPPED
     for now_ns in range(20, STOPPED_NS + 20, STOPPED_NS // 10):
