@@ -39,8 +39,13 @@ class Drawing:
 def drawing_of(sight: Sight, system: SightSystem) -> Drawing:
     """Return what is to be drawn of a sight."""
     if sight.pose is None or sight.sighting is None:
-        foreign = f"; foreign ids {sorted(sight.foreign_ids)}" if sight.foreign_ids else ""
-        return Drawing(outlines=(), text=f"no pad{foreign}", color=_RED)
+        causes = (
+            ("foreign ids", sight.foreign_ids),
+            ("at two places", sight.doubled_ids),
+            ("not where the board has them", sight.odd_ids),
+        )
+        why = "".join(f"; {cause} {sorted(ids)}" for cause, ids in causes if ids)
+        return Drawing(outlines=(), text=f"no pad{why}", color=_RED)
     quads = [(system.board.outline_m, _GREEN)]
     quads += [(system.board.corners_m[tag_id], _YELLOW) for tag_id in sight.tags]
     side_px = -float(max(system.camera.size_px))

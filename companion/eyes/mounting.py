@@ -71,6 +71,22 @@ def mounting_of(config: MountingConfig) -> Mounting:
     )
 
 
+def covariance_flu_m2(mounting: Mounting, place_c_m: Array, covariance_c_m2: Array) -> Array:
+    """Return the covariance (3, 3) in B of a place that is seen, with the doubts of the mounting.
+
+    Args:
+        mounting: of the camera.
+        place_c_m: (3,) in C.
+        covariance_c_m2: (3, 3) in C, of the place alone.
+    """
+    in_c = covariance_c_m2 + mounting.focal_std_share**2 * np.outer(place_c_m, place_c_m)
+    in_c += mounting.board_std_m**2 * np.eye(3)
+    arm = mounting.R_BC @ place_c_m
+    in_b = mounting.R_BC @ in_c @ mounting.R_BC.T
+    in_b += mounting.rotation_std_rad**2 * (float(arm @ arm) * np.eye(3) - np.outer(arm, arm))
+    return np.asarray(0.5 * (in_b + in_b.T))
+
+
 def angles_of(R_BC: Array) -> tuple[float, float, float]:
     """Return roll, pitch and yaw of a camera's attitude (3, 3), as `MountingConfig` has them."""
     return roll_pitch_yaw_of(quaternion_from_matrix(R_BC @ _R_BC_DOWN.T))

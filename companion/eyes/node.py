@@ -6,11 +6,12 @@ from enum import Enum, auto
 
 import numpy as np
 
-from companion.eyes.alignment import is_told_wrong, no_alignment, turned_of, update_alignment, upright
+from companion.eyes.alignment import is_told_wrong, no_alignment, turned_of, update_alignment
 from companion.eyes.annotation import Drawing, annotate, drawing_of, jpeg_of
 from companion.eyes.attitude import Attitude, attitude_at, with_attitude
 from companion.eyes.calibration import check_size
 from companion.eyes.camera import matrix_of
+from companion.eyes.doubts import DoubtWatch
 from companion.eyes.mounting import angles_of
 from companion.eyes.picture import WholePicture
 from companion.eyes.sight import Frame, Sight, SightMemory, SightSystem, sight_step
@@ -28,7 +29,6 @@ _STAMPS_NS = (int(0.1 * NS_PER_S), (1 << 31) * NS_PER_S - int(0.1 * NS_PER_S))
 
 Below is what a driver sends that fills in no time at all: 0.
 """
-_LEANING = 30  # pictures, a second of most cameras: of a board that is carried, or a drone that flares, there are few
 _SIZE_SPARE = 1.02  # by which a board may be larger than the pad: what tape measures
 
 
@@ -54,8 +54,6 @@ class _News:
     foreign_ids: set[int] = field(default_factory=set)
     is_seen: bool = False
     is_turned: bool = False
-    leaning: int = 0  # pictures since the last sighting
-    has_told_leaning: bool = False
     refused: set[_Refused] = field(default_factory=set)
     lines: list[str] = field(default_factory=list)
 
@@ -77,6 +75,7 @@ class EyesNode:
         self._attitudes: tuple[Attitude, ...] = ()
         self._sight = Sight()
         self._news = _News()
+        self._doubts = DoubtWatch()
 
     def drawing(self) -> Drawing:
         """Return what is to be drawn on the frame that was looked at last."""
@@ -140,7 +139,8 @@ class EyesNode:
         self._memory, sight = sight_step(self._memory, frame, self._system)
         self._count(sight)
         self._align(frame, sight)
-        self._tell_leaning(frame, sight)
+        doubt = self._doubts.update(frame, sight, self._system.mounting)
+        self._news.lines += [] if doubt is None else [doubt]
         self._sight = sight
         found: list[Publication] = []
         if sight.sighting is not None:
@@ -198,23 +198,6 @@ class EyesNode:
                 math.degrees(turned.std_rad),
                 *angles_of(matrix_of(off) @ mounting.R_BC),
             )
-        )
-
-    def _tell_leaning(self, frame: Frame, sight: Sight) -> None:
-        """Say once if the board is read again and again where no deck can be: nothing else would show that."""
-        news, mounting = self._news, self._system.mounting
-        if sight.sighting is not None:
-            news.leaning = 0
-        news.leaning += sight.leaning is not None
-        if sight.leaning is None or news.leaning < _LEANING or news.has_told_leaning:
-            return
-        R_WB = np.eye(3) if frame.orientation_wxyz is None else matrix_from_quaternion(frame.orientation_wxyz)
-        off = upright(mounting.R_BC @ matrix_of(sight.leaning[0]), R_WB)
-        news.has_told_leaning = True
-        news.lines.append(
-            "the board is read but not reported: it would lean by {:.0f} degrees, which no deck does; is the camera "
-            "turned otherwise than its --mounting says? About roll_rad = {:.1f}, pitch_rad = {:.1f}, yaw_rad = {:.1f} "
-            "would fit".format(math.degrees(float(np.linalg.norm(off))), *angles_of(matrix_of(off) @ mounting.R_BC))
         )
 
     def take_news(self) -> list[str]:

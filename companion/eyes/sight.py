@@ -15,12 +15,22 @@ from numpy.typing import NDArray
 
 from companion.eyes.board import CELLS, Board
 from companion.eyes.camera import Camera, matrix_of
-from companion.eyes.finding.choosing import TILT_STDS_MAX, Candidate, choose, mirrored, tilt_stds
+from companion.eyes.finding.agreement import most_agree, odd_ids
+from companion.eyes.finding.choosing import (
+    TILT_STDS_MAX,
+    Candidate,
+    Chosen,
+    better,
+    choose,
+    leaning_of,
+    mirrored,
+    tilt_stds,
+)
 from companion.eyes.finding.pose import Pose, guesses, refine
-from companion.eyes.finding.reading import TAGS_MAX, expected_tags, read_tags
+from companion.eyes.finding.reading import TAGS_MAX, read_best
 from companion.eyes.finding.search import search
 from companion.eyes.finding.track import Track, expected_pose, update_track
-from companion.eyes.mounting import Mounting
+from companion.eyes.mounting import Mounting, covariance_flu_m2
 from companion.eyes.picture import Part, Picture, box_around, whole
 from link.frames.rotations import matrix_from_quaternion, quaternion_from_matrix
 from link.messages import PadSighting, Quaternion
@@ -31,14 +41,15 @@ _MARGIN_SHARE, _MARGIN_PX = 0.1, 12.0  # about the pad where it is looked for: o
 _RMS_SHARE_MAX = 0.35  # of a cell of the largest tag: edges farther off are other edges
 _RMS_MIN_PX = 1.0
 _ROUNDS_MAX = 4
-_FEW = 3  # tags
-_COMPLETE_SHARE = 0.5  # of the tags that should be seen: with these no other pass is needed
+_SEARCH_NS = 1_000_000_000  # between two searches beside a track that reads less than that
+_COMPLETE_SHARE = 0.5  # of the tags that should be seen: with more no other pass is needed to place the pad
 
 
 class SightMemory(Struct, frozen=True, kw_only=True):
-    """What is kept from frame to frame; None while the pad is not seen."""
+    """What is kept from frame to frame: where the pad was seen last, and when the picture was searched last."""
 
     track: Track | None = None
+    searched_ns: int | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -69,9 +80,11 @@ class Sight:
         tags: that the pose rests on.
         rms_px: of the edges' distances from it.
         tracked: it was found without a search.
+        is_complete: most tags were read that should be seen.
         foreign_ids: tags of the family that are not on the board, as far as it was searched.
-        leaning: where the pad was read but not believed, since no pose explains it that is as level as decks are, the
-            most level one.
+        leaning: the most level pose of a pad that was read but not believed, since no deck leans so far.
+        doubled_ids: of tags of the board that are seen at two places, so that the pad may be either.
+        odd_ids: of tags of the board that are not where a pose has them, if these are most: none was believed.
     """
 
     sighting: PadSighting | None = None
@@ -79,8 +92,11 @@ class Sight:
     tags: tuple[int, ...] = ()
     rms_px: float | None = None
     tracked: bool = False
+    is_complete: bool = False
     foreign_ids: frozenset[int] = frozenset()
     leaning: Pose | None = None
+    doubled_ids: frozenset[int] = frozenset()
+    odd_ids: frozenset[int] = frozenset()
 
 
 def sight_step(memory: SightMemory, frame: Frame, system: SightSystem) -> tuple[SightMemory, Sight]:
@@ -89,11 +105,24 @@ def sight_step(memory: SightMemory, frame: Frame, system: SightSystem) -> tuple[
     R_WC = R_WB @ system.mounting.R_BC
     expected = expected_pose(memory.track, frame.t_ns, R_WC)
     sight = None if expected is None else _track(frame, system, R_WB, expected)
-    if sight is None:
-        sight = _search(frame, system, R_WB)
-    if sight.pose is None:  # it is expected for a while where it was going
-        return memory, sight
-    return SightMemory(track=update_track(memory.track, frame.t_ns, sight.pose, R_WC)), sight
+    if sight is None or _is_search_due(memory, sight, frame.t_ns):
+        found = _search(frame, system, R_WB)
+        memory = SightMemory(track=None if found.odd_ids else memory.track, searched_ns=frame.t_ns)
+        sight = found if sight is None or found.odd_ids else sight
+    if sight.pose is None:
+        return memory, sight  # it is expected for a while where it was going
+    track = update_track(memory.track, frame.t_ns, sight.pose, R_WC)
+    return SightMemory(track=track, searched_ns=memory.searched_ns), sight
+
+
+def _is_search_due(memory: SightMemory, tracked: Sight, t_ns: int) -> bool:
+    """Return whether a track should be compared with all tags in the picture.
+
+    One that began with a single tag goes on with it if the other tags are not where the board's file has them.
+    """
+    if tracked.is_complete or memory.searched_ns is None:
+        return False
+    return not 0 <= t_ns - memory.searched_ns < _SEARCH_NS
 
 
 def _track(frame: Frame, system: SightSystem, R_WB: Array, expected: Pose) -> Sight | None:
@@ -113,24 +142,33 @@ def _track(frame: Frame, system: SightSystem, R_WB: Array, expected: Pose) -> Si
 
 
 def _search(frame: Frame, system: SightSystem, R_WB: Array) -> Sight:
-    """Return the pad wherever it is in the picture; where a pass finds few tags, the next may find more."""
+    """Return the pad wherever it is in the picture; where a pass finds few tags, the next may find more.
+
+    Once the pad is placed, the passes without mud are made all the same: coarse ones show one of two like boards only.
+    """
     part = frame.picture.part(whole(frame.picture.size_px))
     foreign: frozenset[int] = frozenset()
-    best: tuple[Candidate, Candidate | None] | None = None
+    seen: dict[int, Array] = {}
+    best: Chosen | None = None
     leaning: Pose | None = None
+    is_explained = is_placed = False
     for found in search(part, system.board):
         foreign |= found.foreign_ids
-        near = _candidates(part, system, R_WB, frame, guesses(system.camera, system.board, found.corners_px))
-        chosen = choose(near)
-        if chosen is not None and (best is None or chosen[0].refined.points > best[0].refined.points):
-            best = chosen
-        level = min(near, key=lambda one: one.tilt_stds, default=None)
-        if level is not None and level.tilt_stds > TILT_STDS_MAX:
-            leaning = level.refined.pose
-        if best is not None and (best[0].is_complete or found.is_followed_by_mud):
+        seen |= found.corners_px
+        if found.doubled_ids:
+            return Sight(foreign_ids=foreign, doubled_ids=found.doubled_ids)
+        if not is_placed:
+            near = _candidates(part, system, R_WB, frame, guesses(system.camera, system.board, found.corners_px))
+            is_explained = is_explained or bool(near)
+            best, leaning = better(best, choose(near)), leaning_of(near) or leaning
+            is_placed = best is not None and best[0].is_complete
+        if best is not None and found.is_followed_by_mud:
             break
     if best is None:
-        return Sight(foreign_ids=foreign, leaning=leaning)
+        return Sight(foreign_ids=foreign, leaning=leaning, odd_ids=frozenset() if is_explained else frozenset(seen))
+    odd = odd_ids(system.camera, system.board, best[0].refined.pose, seen)
+    if not most_agree(odd, seen):
+        return Sight(foreign_ids=foreign, odd_ids=odd)
     return _sight(frame, system, *best, tracked=False, foreign_ids=foreign)
 
 
@@ -147,13 +185,13 @@ def _settle(part: Part, system: SightSystem, R_WB: Array, frame: Frame, guess: P
     """Return the pose near a guess; the better it gets, the more tags are read, until these are all."""
     camera, board = system.camera, system.board
     pose, refined = guess, None
-    used, expected = _read(part, system, guess)
+    used, expected = read_best(part, system.camera, system.board, guess)
     for _ in range(_ROUNDS_MAX):
         found = refine(part, camera, board, pose, used) if used else None
         if found is None:
             break
         pose, refined, before = found.pose, found, used
-        used, expected = _read(part, system, pose)
+        used, expected = read_best(part, system.camera, system.board, pose)
         if used.keys() <= before.keys():
             break
     if refined is None or not used or refined.rms_px > max(_RMS_MIN_PX, _RMS_SHARE_MAX * max(used.values()) / CELLS):
@@ -164,21 +202,8 @@ def _settle(part: Part, system: SightSystem, R_WB: Array, frame: Frame, guess: P
         tilt_stds=tilt_stds(
             R_WB @ system.mounting.R_BC @ matrix_of(pose[0]), is_level_known=frame.orientation_wxyz is not None
         ),
-        is_complete=len(used) >= _COMPLETE_SHARE * min(expected, TAGS_MAX),
+        is_complete=len(used) > _COMPLETE_SHARE * min(expected, TAGS_MAX),
     )
-
-
-def _read(part: Part, system: SightSystem, pose: Pose) -> tuple[dict[int, float], int]:
-    """Return the sides in pixels of the tags that are read at a pose, the largest first, and how many might have been.
-
-    Where hardly any of the largest is read, the others are tried: those beside a tag that fits may fit as well.
-    """
-    camera, board = system.camera, system.board
-    expected = expected_tags(camera, board, pose)
-    ids = read_tags(part, camera, board, pose, list(expected)[:TAGS_MAX])
-    if len(ids) < _FEW and len(expected) > TAGS_MAX:
-        ids = read_tags(part, camera, board, pose, list(expected))[:TAGS_MAX]
-    return {tag_id: expected[tag_id] for tag_id in ids}, len(expected)
 
 
 def _sight(
@@ -192,16 +217,12 @@ def _sight(
 ) -> Sight:
     mounting, refined = system.mounting, candidate.refined
     rotation, translation = refined.pose
-    in_c = refined.covariance[3:, 3:] + mounting.focal_std_share**2 * np.outer(translation, translation)
-    in_c += mounting.board_std_m**2 * np.eye(3)
+    in_c = refined.covariance[3:, 3:]
     if other is not None:
         apart = other.refined.pose[1] - translation
         in_c = in_c + 0.25 * np.outer(apart, apart)
-    arm = mounting.R_BC @ translation
-    in_b = mounting.R_BC @ in_c @ mounting.R_BC.T
-    in_b += mounting.rotation_std_rad**2 * (float(arm @ arm) * np.eye(3) - np.outer(arm, arm))
-    in_b = 0.5 * (in_b + in_b.T)
-    x, y, z = (arm + mounting.position_flu_m).tolist()
+    in_b = covariance_flu_m2(mounting, translation, in_c)
+    x, y, z = (mounting.R_BC @ translation + mounting.position_flu_m).tolist()
     a, b, c, d, e, f, g, h, i = in_b.ravel().tolist()
     sighting = PadSighting(
         t_ns=frame.t_ns + round(_late_s(candidate, system) * 1e9),
@@ -215,6 +236,7 @@ def _sight(
         tags=candidate.tags,
         rms_px=refined.rms_px,
         tracked=tracked,
+        is_complete=candidate.is_complete,
         foreign_ids=foreign_ids,
     )
 

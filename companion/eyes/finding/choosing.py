@@ -36,7 +36,11 @@ class Candidate:
     is_complete: bool
 
 
-def choose(candidates: list[Candidate]) -> tuple[Candidate, Candidate | None] | None:
+Chosen = tuple[Candidate, Candidate | None]
+"""A pose, and its mirrored one if that may be the right one as well."""
+
+
+def choose(candidates: list[Candidate]) -> Chosen | None:
     """Return the more probable of up to two poses, and the other one where it may as well be.
 
     None is returned where none can be right, or where they cannot be told apart and are not alike either.
@@ -55,6 +59,19 @@ def choose(candidates: list[Candidate]) -> tuple[Candidate, Candidate | None] | 
     if _apart_rad(*(one.refined.pose for one in candidates)) > _APART_MAX_RAD:
         return None
     return candidates[best], candidates[1 - best]
+
+
+def better(best: Chosen | None, chosen: Chosen | None) -> Chosen | None:
+    """Return which of two rests on more points, the first if they are as many."""
+    if best is None or chosen is None:
+        return best or chosen
+    return chosen if chosen[0].refined.points > best[0].refined.points else best
+
+
+def leaning_of(candidates: list[Candidate]) -> Pose | None:
+    """Return the most level pose if even that one is not as level as decks are."""
+    level = min(candidates, key=lambda one: one.tilt_stds, default=None)
+    return None if level is None or level.tilt_stds <= TILT_STDS_MAX else level.refined.pose
 
 
 def _misread_probability(scores: list[float]) -> float:

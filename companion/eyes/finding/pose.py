@@ -31,7 +31,8 @@ Array = NDArray[np.float64]
 Pose = tuple[Array, Array]
 
 _POSE = 6  # what is fitted: rotation and translation
-_AGREES_PX = 3.0  # three standard deviations of what a search finds: OpenCV's corners of blurred tags
+AGREES_PX = 3.0
+"""Three standard deviations of what a search finds: OpenCV's corners of blurred tags."""
 _REACHES_PX = (40.0, 12.0, 5.0, 4.0)  # of the rounds: first as far as the guess may be off, then as fine as blur allows
 _EDGE_STD_PX = 0.1  # of one point, at best: what is left of lenses and printing after a calibration
 _HUBER = 1.5  # standard deviations
@@ -80,7 +81,7 @@ def guesses(camera: Camera, board: Board, corners_px: dict[int, Array]) -> list[
     if len(ids) > 1:
         places = np.concatenate([board.corners_m[tag_id][:, :2] for tag_id in ids])
         rays = camera.rays(np.concatenate([corners_px[tag_id] for tag_id in ids]))
-        _, agrees = cv2.findHomography(places, rays, cv2.RANSAC, _AGREES_PX / camera.focal_px)
+        _, agrees = cv2.findHomography(places, rays, cv2.RANSAC, AGREES_PX / camera.focal_px)
         if agrees is not None:
             kept = np.asarray(np.all(np.asarray(agrees).reshape(-1, 4), axis=1)).tolist()
             ids = [tag_id for tag_id, is_kept in zip(ids, kept, strict=True) if is_kept]

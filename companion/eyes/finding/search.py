@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from companion.eyes.board import CELLS, Board, dictionary_of
+from companion.eyes.finding.agreement import doubled_ids
 from companion.eyes.picture import Gray, Part
 
 Array = NDArray[np.float64]
@@ -50,11 +51,13 @@ class Found:
     Attributes:
         corners_px: of each id on the board the corners (4, 2) in the whole picture, in the order of `Board.corners_m`.
         foreign_ids: of tags of the family that are not on the board.
+        doubled_ids: on the board that this pass and those before it have seen at two places.
         is_followed_by_mud: the passes after it expect mud: worth their time only where nothing has shown the board.
     """
 
     corners_px: dict[int, Array]
     foreign_ids: frozenset[int]
+    doubled_ids: frozenset[int]
     is_followed_by_mud: bool
 
 
@@ -64,15 +67,23 @@ def search(part: Part, board: Board) -> Iterator[Found]:
     An id that is seen twice is believed at neither place.
     """
     constant = _threshold_of(part.shades)
+    places: dict[int, list[Array]] = {tag_id: [] for tag_id in board.corners_m}
     for one, following in zip(_PASSES, (*_PASSES[1:], None), strict=True):
         tags = _detect(part.shades, one, board.config.family, constant)
         seen = [tag_id for tag_id, _ in tags]
-        known = {
-            tag_id: corners + np.array([part.box.left, part.box.top])
+        known = [
+            (tag_id, corners + np.array([part.box.left, part.box.top]))
             for tag_id, corners in tags
-            if tag_id in board.corners_m and seen.count(tag_id) == 1
-        }
-        yield Found(known, frozenset(seen) - frozenset(board.corners_m), following is not None and following.is_muddy)
+            if tag_id in board.corners_m
+        ]
+        for tag_id, corners in known:
+            places[tag_id].append(corners)
+        yield Found(
+            corners_px={tag_id: corners for tag_id, corners in known if seen.count(tag_id) == 1},
+            foreign_ids=frozenset(seen) - frozenset(board.corners_m),
+            doubled_ids=doubled_ids(places),
+            is_followed_by_mud=following is not None and following.is_muddy,
+        )
 
 
 def _threshold_of(shades: Gray) -> int:

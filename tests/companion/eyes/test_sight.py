@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from companion.eyes.board import Board, load_board, nested_board
-from companion.eyes.picture import WholePicture
+from companion.eyes.board import Board, BoardConfig, TagConfig, load_board, nested_board
+from companion.eyes.picture import Gray, WholePicture
 from companion.eyes.sight import Frame, Sight, SightMemory, sight_step
 from link.frames.rotations import matrix_from_quaternion
 from link.records import replace
@@ -17,6 +17,11 @@ EMPTY = SightMemory()
 
 def look(one: Case, memory: SightMemory = EMPTY) -> Sight:
     return sight_step(memory, one.frame, system())[1]
+
+
+def shades_of(one: Case) -> Gray:
+    assert isinstance(one.frame.picture, WholePicture)
+    return one.frame.picture.shades
 
 
 def error_m(sight: Sight, one: Case) -> float:
@@ -129,3 +134,58 @@ def test_a_tag_that_is_at_the_wrong_place_does_not_move_the_pad() -> None:
     sight = sight_step(EMPTY, one.frame, system(wrong))[1]
     assert BOARD.tags[7].id not in sight.tags
     assert error_m(sight, one) < 0.01
+
+
+def grid(*, side_m: float = 0.3, left: float = 1.0) -> BoardConfig:
+    """A board of four tags; with `left` -1 as somebody has it who counts to the right."""
+    places = [(0.25, 0.25), (0.25, -0.25), (-0.25, 0.25), (-0.25, -0.25)]
+    tags = (
+        TagConfig(id=100 + number, center_m=(x_m, left * y_m), side_m=side_m)
+        for number, (x_m, y_m) in enumerate(places)
+    )
+    return BoardConfig(size_m=(1.2, 1.2), tags=tuple(tags))
+
+
+GRID = grid()
+
+
+@pytest.mark.parametrize("told", [grid(side_m=0.24), grid(left=-1.0)], ids=["sides", "left and right"])
+def test_board_whose_file_does_not_fit_the_print_is_not_seen_beside_its_place(told: BoardConfig) -> None:
+    frame = case(6.0, board=GRID).frame
+    assert len(sight_step(EMPTY, frame, system(Board(GRID)))[1].tags) == len(GRID.tags)
+    sight = sight_step(EMPTY, frame, system(Board(told)))[1]
+    assert sight.sighting is None
+    assert sight.odd_ids
+
+
+def test_track_that_began_with_one_tag_of_a_wrong_board_ends_once_the_others_are_seen() -> None:
+    wrong = system(Board(grid(side_m=0.24)))
+    one = case(6.0, board=GRID)
+    pose = sight_step(EMPTY, one.frame, system(Board(GRID)))[1].pose
+    assert pose is not None
+    hidden = shades_of(one).copy()
+    for tag in GRID.tags[1:]:
+        column, row = CAMERA.pixels(Board(GRID).corners_m[tag.id].mean(axis=0)[None], *pose)[0][0].round().astype(int)
+        hidden[row - 16 : row + 16, column - 16 : column + 16] = 200
+    memory, sight = sight_step(EMPTY, replace(one.frame, picture=WholePicture(hidden)), wrong)
+    assert sight.tags == (GRID.tags[0].id,)
+    seen = []
+    for step in range(1, 7):
+        memory, sight = sight_step(memory, replace(one.frame, t_ns=one.frame.t_ns + step * 200_000_000), wrong)
+        seen.append(sight.sighting is not None)
+    assert not seen[-1]
+    assert memory.track is None
+
+
+@pytest.mark.parametrize("range_m", [4.0, 8.0])
+def test_neither_of_two_boards_with_the_same_ids_is_the_pad(range_m: float) -> None:
+    left, right = (
+        case(range_m, board=BOARD, roll_pitch_yaw_rad=(0.0, 0.0, 0.0), aside_m=(aside_m, 0.1))
+        for aside_m in (1.3, -1.3)
+    )
+    assert max(error_m(look(left), left), error_m(look(right), right)) < 0.01 + 0.01 * range_m
+    middle = CAMERA.size_px[0] // 2
+    both = np.hstack([shades_of(left)[:, :middle], shades_of(right)[:, middle:]])
+    sight = look(replace(left, frame=replace(left.frame, picture=WholePicture(both))))
+    assert sight.sighting is None
+    assert 0 in sight.doubled_ids
