@@ -1,4 +1,4 @@
-"""Why a board that is read is not reported: what the user has to mend, said once for each cause."""
+"""Why a board that is there is not reported: what the user has to mend, said once for each cause."""
 
 import math
 from enum import Enum, auto
@@ -6,13 +6,18 @@ from enum import Enum, auto
 import numpy as np
 
 from companion.eyes.alignment import upright
+from companion.eyes.board import Board
 from companion.eyes.camera import matrix_of
+from companion.eyes.finding.hints import HINTS, hint_of
 from companion.eyes.finding.pose import Pose
 from companion.eyes.mounting import Mounting, angles_of
+from companion.eyes.picture import Gray
 from companion.eyes.sight import Frame, Sight
 from link.frames.rotations import matrix_from_quaternion
 
 _PICTURES = 30  # a second of most cameras: of a board that is carried, or a drone that flares, there are few
+_HINT_EVERY = 4  # pictures without a tag: a look for one cause takes as long as a search's coarse passes
+_HINT_TIMES = 3  # in a row: chance reads a tag of some family in one picture or another
 _IDS_MAX = 5  # that are named
 
 
@@ -85,3 +90,27 @@ def _leaning_line(frame: Frame, leaning: Pose, mounting: Mounting) -> str:
         "turned otherwise than its --mounting says? About roll_rad = {:.1f}, pitch_rad = {:.1f}, yaw_rad = {:.1f} "
         "would fit".format(math.degrees(float(np.linalg.norm(off))), *angles_of(matrix_of(off) @ mounting.R_BC))
     )
+
+
+class HintWatch:
+    """Looks for the cause where no tag at all is read, until the first one is."""
+
+    def __init__(self) -> None:
+        self._pictures = 0
+        self._counts = [0] * HINTS
+        self._is_over = False
+
+    def update(self, shades: Gray, sight: Sight, board: Board) -> str | None:
+        """Return what is to be said after a frame, None for nothing."""
+        is_read = sight.sighting is not None or sight.foreign_ids or _doubt_of(sight) is not None
+        self._is_over = self._is_over or bool(is_read)
+        if self._is_over:
+            return None
+        self._pictures += 1
+        if self._pictures % _HINT_EVERY:
+            return None
+        number = self._pictures // _HINT_EVERY % HINTS
+        text = hint_of(shades, board, number)
+        self._counts[number] = 0 if text is None else self._counts[number] + 1
+        self._is_over = self._counts[number] == _HINT_TIMES
+        return text if self._is_over else None

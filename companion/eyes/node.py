@@ -11,7 +11,7 @@ from companion.eyes.annotation import Drawing, annotate, drawing_of, jpeg_of
 from companion.eyes.attitude import Attitude, attitude_at, with_attitude
 from companion.eyes.calibration import check_size
 from companion.eyes.camera import matrix_of
-from companion.eyes.doubts import DoubtWatch
+from companion.eyes.doubts import DoubtWatch, HintWatch
 from companion.eyes.mounting import angles_of
 from companion.eyes.picture import WholePicture
 from companion.eyes.sight import Frame, Sight, SightMemory, SightSystem, sight_step
@@ -76,6 +76,7 @@ class EyesNode:
         self._sight = Sight()
         self._news = _News()
         self._doubts = DoubtWatch()
+        self._hints = HintWatch()
 
     def drawing(self) -> Drawing:
         """Return what is to be drawn on the frame that was looked at last."""
@@ -140,7 +141,8 @@ class EyesNode:
         self._count(sight)
         self._align(frame, sight)
         doubt = self._doubts.update(frame, sight, self._system.mounting)
-        self._news.lines += [] if doubt is None else [doubt]
+        hint = self._hints.update(captured.shades, sight, self._system.board)
+        self._news.lines += [line for line in (doubt, hint) if line is not None]
         self._sight = sight
         found: list[Publication] = []
         if sight.sighting is not None:

@@ -10,8 +10,13 @@ from companion.eyes.picture import Gray
 from link.messages import CameraImage, CompressedPicture
 from link.payloads.checks import PayloadError
 
-_GRAY_OF = {"bgr8": cv2.COLOR_BGR2GRAY, "rgb8": cv2.COLOR_RGB2GRAY, "bgra8": cv2.COLOR_BGRA2GRAY}
-_CHANNELS = {"mono8": 1, "8UC1": 1, "bgr8": 3, "rgb8": 3, "bgra8": 4}
+_GRAY_OF = {
+    "bgr8": cv2.COLOR_BGR2GRAY,
+    "rgb8": cv2.COLOR_RGB2GRAY,
+    "bgra8": cv2.COLOR_BGRA2GRAY,
+    "rgba8": cv2.COLOR_RGBA2GRAY,
+}
+_CHANNELS = {"mono8": 1, "8UC1": 1, "bgr8": 3, "rgb8": 3, "bgra8": 4, "rgba8": 4}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -1,11 +1,12 @@
 import numpy as np
 import pytest
 
-from companion.eyes.doubts import DoubtWatch, ids_text
+from companion.eyes.board import load_board
+from companion.eyes.doubts import DoubtWatch, HintWatch, ids_text
 from companion.eyes.picture import WholePicture
 from companion.eyes.sight import Frame, Sight
 from link.messages import PadSighting
-from tests.companion.eyes.frames import MOUNTING
+from tests.companion.eyes.frames import MOUNTING, case
 
 FRAME = Frame(t_ns=10**9, picture=WholePicture(np.zeros((2, 2), np.uint8)))
 SEEN = Sight(
@@ -43,3 +44,16 @@ def test_doubts_between_sightings_are_not_told() -> None:
 def test_many_ids_are_told_by_the_first_of_them() -> None:
     assert ids_text(frozenset({7, 3})) == "3, 7"
     assert ids_text(frozenset(range(10, 17))) == "10, 11, 12, 13, 14 and 2 more"
+
+
+@pytest.mark.parametrize(("before", "lines"), [(Sight(), 1), (Sight(foreign_ids=frozenset({80})), 0), (SEEN, 0)])
+def test_mirrored_pictures_are_told_once_unless_a_tag_has_been_read_before(before: Sight, lines: int) -> None:
+    board = load_board(None)
+    shown = case(7.0, board=board.config).frame.picture
+    assert isinstance(shown, WholePicture)
+    mirrored = np.ascontiguousarray(shown.shades[:, ::-1])
+    watch = HintWatch()
+    watch.update(mirrored, before, board)
+    told = [line for _ in range(150) if (line := watch.update(mirrored, Sight(), board)) is not None]
+    assert len(told) == lines
+    assert all("mirrored" in line for line in told)

@@ -40,9 +40,9 @@ def test_gray_pictures_are_read_as_they_are_with_or_without_spare_bytes(spare: i
     assert (gray_of_image(image("mono8", SHADES, spare)) == SHADES).all()
 
 
-@pytest.mark.parametrize("encoding", ["rgb8", "bgr8", "bgra8"])
+@pytest.mark.parametrize("encoding", ["rgb8", "bgr8", "bgra8", "rgba8"])
 def test_a_gray_scene_in_colours_has_the_same_shades(encoding: str) -> None:
-    pixels = np.repeat(SHADES[:, :, None], 4 if encoding == "bgra8" else 3, axis=2)
+    pixels = np.repeat(SHADES[:, :, None], 4 if "a" in encoding else 3, axis=2)
     assert np.abs(gray_of_image(image(encoding, pixels)).astype(int) - SHADES).max() <= 1
 
 
@@ -50,6 +50,8 @@ def test_red_is_brighter_than_blue_whatever_their_order() -> None:
     red = np.zeros((6, 8, 3), np.uint8)
     red[:, :, 0] = 200
     assert gray_of_image(image("rgb8", red)).mean() > 2 * gray_of_image(image("bgr8", red)).mean()
+    clear = np.dstack([red, np.zeros_like(SHADES)])
+    assert gray_of_image(image("rgba8", clear)).mean() > 2 * gray_of_image(image("bgra8", clear)).mean()
 
 
 def test_pictures_of_unknown_pixels_are_refused_by_name() -> None:
