@@ -1,4 +1,4 @@
-"""Why no tag of the board is read: whether the picture is mirrored, or what it shows is printed otherwise; pure.
+"""Why no tag of the board is read: the light, a mirrored picture, or a print of another kind; pure.
 
 Of other families tags of 25 bits and more are tried, without any wrong one: chance reads them less than once in 5,000
 squares.
@@ -11,11 +11,16 @@ import cv2
 import numpy as np
 
 from companion.eyes.board import Board
+from companion.eyes.finding.reading import CONTRAST_MIN
 from companion.eyes.finding.search import search
 from companion.eyes.picture import Gray, Part, whole
 
 _REDUCTION = 2  # four times as fast, and a user who looks for the cause holds the board near
 _PASSES = 3  # of a search, up to this reduction
+_SMOOTH_PX = 5  # over which a sensor's noise is averaged out
+_WHITE, _WHITE_SHARE = 255, 0.5
+_DIM = "the pictures show hardly anything: their shades differ by {} of 255; is the lens covered, or is it too dark?"
+_BRIGHT = "{:.0f} % of the picture are overexposed: let the camera expose for less time"
 _MIRRORED = "the pictures are mirrored: no tag can be read in them; switch the camera's mirror (h-flip) off"
 _NEGATIVE = "tags are seen with black and white exchanged: print the board as the PDF has it"
 _OTHER = "tags of {} are seen, and the board has AprilTag {}: print the board that `pad-detector print` draws"
@@ -27,7 +32,7 @@ _OTHERS = (
     ("ArUco 7x7", cv2.aruco.DICT_7X7_1000),
     ("ArUco MIP 36h12", cv2.aruco.DICT_ARUCO_MIP_36h12),
 )
-HINTS = 2 + len(_OTHERS)
+HINTS = 3 + len(_OTHERS)
 
 
 def hint_of(shades: Gray, board: Board, number: int) -> str | None:
@@ -39,11 +44,23 @@ def hint_of(shades: Gray, board: Board, number: int) -> str | None:
         number: of the cause, below `HINTS`.
     """
     if number == 0:
-        return _MIRRORED if _is_board(np.ascontiguousarray(shades[:, ::-1]), board) else None
+        return _light_of(shades)
     if number == 1:
+        return _MIRRORED if _is_board(np.ascontiguousarray(shades[:, ::-1]), board) else None
+    if number == 2:
         return _NEGATIVE if _is_board(255 - shades, board) else None
-    name, table = _OTHERS[number - 2]
+    name, table = _OTHERS[number - 3]
     return _OTHER.format(name, board.config.family) if _is_read(shades, table) else None
+
+
+def _light_of(shades: Gray) -> str | None:
+    """Return what is wrong with the light, None if the shades of a tag could be told apart."""
+    smooth = cv2.blur(shades, (_SMOOTH_PX, _SMOOTH_PX))
+    contrast = int(smooth.max()) - int(smooth.min())
+    white = float(np.mean(shades == _WHITE))
+    if white > _WHITE_SHARE:
+        return _BRIGHT.format(100.0 * white)
+    return _DIM.format(contrast) if contrast < CONTRAST_MIN else None
 
 
 def _is_board(shades: Gray, board: Board) -> bool:

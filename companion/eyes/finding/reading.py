@@ -21,7 +21,8 @@ _FEW = 3  # tags
 _GRID, _HOST_GRID = 2, 4  # samples along a cell's side; more where another tag may stand in it
 _CELLS_MIN = 32  # in the picture; chance reads them with at most 12 % wrong less than once in 100,000 times
 _WRONG_SHARE_MAX = 0.12
-_CONTRAST_MIN = 12.0  # shades between black and white
+CONTRAST_MIN = 12.0
+"""Shades between black and white: less is not read."""
 
 
 def expected_tags(camera: Camera, board: Board, pose: Pose) -> dict[int, float]:
@@ -82,7 +83,7 @@ def _is_read(seen: NDArray[np.float32], inside: NDArray[np.bool_], white: NDArra
     if inside.sum() < _CELLS_MIN or not (inside & white).any() or not (inside & ~white).any():
         return False
     bright, dark = float(seen[inside & white].mean()), float(seen[inside & ~white].mean())
-    if bright - dark < _CONTRAST_MIN:
+    if bright - dark < CONTRAST_MIN:
         return False
     wrong = ((seen > 0.5 * (bright + dark)) != white) & inside
     return bool(wrong.sum() <= _WRONG_SHARE_MAX * inside.sum())

@@ -56,5 +56,16 @@ def test_tags_of_another_family_are_named(table: int, name: str) -> None:
 
 def test_roofs_and_noise_speak_for_no_cause() -> None:
     noise = np.random.default_rng(8).integers(0, 256, (720, 1280)).astype(np.uint8)
-    for shades in (picture(None), noise, np.zeros((1, 1), np.uint8)):
+    for shades in (picture(None), noise):
         assert told_of(shades) == []
+
+
+def test_a_covered_lens_and_a_picture_that_is_overexposed_are_told() -> None:
+    rng = np.random.default_rng(6)
+    dark = np.clip(rng.normal(6.0, 3.0, (720, 1280)), 0.0, 255.0).astype(np.uint8)
+    (told,) = told_of(dark)
+    assert "is the lens covered" in told
+    (told,) = told_of(np.clip(20.0 * picture(0), 0.0, 255.0).astype(np.uint8))
+    assert "overexposed" in told
+    (told,) = told_of(np.zeros((1, 1), np.uint8))
+    assert "differ by 0 of 255" in told
