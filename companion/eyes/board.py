@@ -11,6 +11,7 @@ OpenCV has them built in.
 from dataclasses import dataclass
 from functools import cache, cached_property
 from importlib import resources
+from itertools import combinations
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -56,7 +57,7 @@ _UNIT_CORNERS = np.array([[0.5, 0.5], [0.5, -0.5], [-0.5, -0.5], [-0.5, 0.5]])  
 
 
 class TagConfig(StrictModel):
-    """One tag; of several that overlap the later one is on top, within a cell of the other."""
+    """One tag; of several that overlap the later one is on top, and no larger than a cell of the other."""
 
     id: Annotated[int, Field(ge=0)]
     center_m: tuple[Place, Place]  # forward and left of the board's middle
@@ -83,6 +84,9 @@ class BoardConfig(StrictModel):
             for center_m, size_m in zip(tag.center_m, self.size_m, strict=True):
                 if abs(center_m) + 0.5 * tag.side_m > 0.5 * size_m:
                     raise ValueError(f"the tag {tag.id} reaches beyond the board's edge")
+        for below, above in combinations(self.tags, 2):
+            if not _are_apart(below, above) and not _is_nested(above, below):
+                raise ValueError(f"the tags {below.id} and {above.id} overlap or touch: white is needed between them")
         return self
 
 
@@ -108,7 +112,7 @@ class Board:
             tag.id
             for tag in self.config.tags
             for other in self.config.tags
-            if other is not tag and _is_within(other, tag)
+            if other is not tag and _is_nested(other, tag)
         )
 
     @cached_property
@@ -117,8 +121,15 @@ class Board:
         return np.column_stack([_UNIT_CORNERS * np.array(self.config.size_m), np.zeros(4)])
 
 
-def _is_within(tag: TagConfig, host: TagConfig) -> bool:
-    return all(abs(a - b) < 0.5 * host.side_m for a, b in zip(tag.center_m, host.center_m, strict=True))
+def _are_apart(one: TagConfig, other: TagConfig) -> bool:
+    between_m = 0.5 * (one.side_m + other.side_m)
+    return any(abs(a - b) > between_m for a, b in zip(one.center_m, other.center_m, strict=True))
+
+
+def _is_nested(tag: TagConfig, host: TagConfig) -> bool:
+    """Return whether a tag stands in another one and is no larger than what a cell of it is read by."""
+    is_within = all(abs(a - b) < 0.5 * host.side_m for a, b in zip(tag.center_m, host.center_m, strict=True))
+    return is_within and tag.side_m <= host.side_m / CELLS
 
 
 def _corners(tag: TagConfig) -> Array:

@@ -1,7 +1,7 @@
 """Calibrations of cameras from files: ROS camera_info, as camera_calibration writes it, and kalibr's camchain."""
 
+import math
 from collections.abc import Callable, Sequence
-from math import isfinite
 from pathlib import Path
 from typing import TypeVar
 
@@ -35,6 +35,9 @@ _MATRIX = 9  # numbers, row by row
 # Of the larger side. Lens holders are true to some tenths of a millimetre: 0.5 mm are 0.14 of a sensor of 1/4 inch.
 _DECENTRED_SHARE_MAX = 0.2
 _SKEWED_MAX_PX = 0.5  # root mean square of a good calibration
+_HALF_VIEW_MAX: dict[Model, float] = {"pinhole": math.tan(math.radians(85.0)), "fisheye": math.radians(140.0)}
+"""Half of what the picture's longer side shows, in focal lengths: more than any lens of the model does."""
+_RADII = 1000
 _COEFFICIENTS: dict[Model, tuple[int, ...]] = {"pinhole": (0, 4, 5, 8, 12, 14), "fisheye": (4,)}
 
 
@@ -134,9 +137,16 @@ def _camera(
     if len(distortion) not in _COEFFICIENTS[model]:
         raise ValueError(f"{len(distortion)} distortion coefficients do not fit the model {model}")
     numbers = [*matrix.ravel().tolist(), *distortion.tolist()]
-    if not all(isfinite(number) for number in numbers) or min(matrix[0, 0], matrix[1, 1]) <= 0.0 or min(size_px) <= 0:
+    if (
+        not all(math.isfinite(number) for number in numbers)
+        or min(matrix[0, 0], matrix[1, 1]) <= 0.0
+        or min(size_px) <= 0
+    ):
         raise ValueError("focal lengths and size must be above 0, and all numbers finite")
     _check_matrix(matrix, size_px)
+    _check_focal(model, matrix, size_px)
+    if model == "pinhole":
+        _check_folds(matrix, distortion, size_px)
     return Camera(model=model, matrix=matrix, distortion=distortion, size_px=size_px)
 
 
@@ -159,6 +169,36 @@ def _check_matrix(matrix: NDArray[np.float64], size_px: tuple[int, int]) -> None
         )
     if abs(skew) * max(cy, height - cy) / fy > _SKEWED_MAX_PX:
         raise ValueError(f"a skew of {skew:g} px is not modelled: calibrate with it fixed at 0")
+
+
+def _check_focal(model: Model, matrix: NDArray[np.float64], size_px: tuple[int, int]) -> None:
+    """Check that the focal lengths are ones in pixels; those of a data sheet are in millimetres."""
+    focal_px, half_px = (matrix[0, 0], matrix[1, 1]), (0.5 * size_px[0], 0.5 * size_px[1])
+    if any(half > _HALF_VIEW_MAX[model] * focal for focal, half in zip(focal_px, half_px, strict=True)):
+        raise ValueError(
+            "no {} lens shows {} x {} pixels by focal lengths of {:g} and {:g} px: are they in millimetres?".format(
+                model, *size_px, *focal_px
+            )
+        )
+
+
+def _check_folds(matrix: NDArray[np.float64], distortion: NDArray[np.float64], size_px: tuple[int, int]) -> None:
+    """Check that the radial coefficients lead outwards as far as the middles of the picture's sides.
+
+    Many good calibrations fold beyond these, in the corners. Within them what is seen has no direction: such
+    coefficients are of another model or in another order.
+    """
+    k1, k2, _, _, k3, k4, k5, k6 = np.pad(distortion, (0, max(8 - len(distortion), 0)))[:8].tolist()
+    r = np.linspace(0.0, _HALF_VIEW_MAX["pinhole"], _RADII)
+    told = r * (1.0 + r**2 * (k1 + r**2 * (k2 + r**2 * k3))) / (1.0 + r**2 * (k4 + r**2 * (k5 + r**2 * k6)))
+    falls = np.flatnonzero(np.diff(told) <= 0.0)
+    reach = float(told[falls[0]]) if len(falls) else math.inf
+    side_px, focal_px = max(zip(size_px, (matrix[0, 0], matrix[1, 1]), strict=True))
+    if reach < 0.5 * side_px / focal_px:
+        raise ValueError(
+            f"the distortion coefficients fold the picture at {reach * focal_px:.0f} pixels from its middle: "
+            "are they of this model, and in its order?"
+        )
 
 
 def dump_calibration(camera: Camera) -> str:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from companion.eyes.board import BoardConfig, TagConfig, cells_of, ids_of, load_board, nested_board
+from companion.eyes.board import Board, BoardConfig, TagConfig, cells_of, ids_of, load_board, nested_board
 from companion.eyes.pdf import write_pdf
 from companion.eyes.plate import raster_of
 from link.errors import UserError
@@ -45,6 +45,9 @@ def test_a_board_beyond_the_familys_ids_is_refused() -> None:
         ([(3, 0.0, 0.1), (3, 0.2, 0.1)], "two tags have the id 3"),
         ([(587, 0.0, 0.1)], "ids 0 to 586"),
         ([(1, 0.3, 0.5)], "beyond the board's edge"),
+        ([(1, 0.2, 0.4), (2, -0.2, 0.4)], "1 and 2 overlap or touch"),
+        ([(1, 0.0, 0.4), (2, 0.1, 0.1)], "1 and 2 overlap or touch"),
+        ([(1, 0.1, 0.04), (2, 0.0, 0.4)], "1 and 2 overlap or touch"),
         ([], "at least one tag"),
     ],
 )
@@ -114,3 +117,12 @@ def inflated(stream: bytes) -> bytes:
         return zlib.decompress(stream)
     except zlib.error:
         return b""
+
+
+def test_a_small_tag_may_stand_in_a_large_one_and_beside_it() -> None:
+    tags = [(1, 0.0, 0.4), (2, 0.0, 0.04), (3, 0.25, 0.08)]
+    board = BoardConfig(
+        size_m=(1.0, 1.0),
+        tags=tuple(TagConfig(id=tag_id, center_m=(x_m, 0.0), side_m=side_m) for tag_id, x_m, side_m in tags),
+    )
+    assert Board(board).hosts == {1}

@@ -113,6 +113,10 @@ def test_a_written_calibration_is_read_back(tmp_path: Path, camera: Camera) -> N
         (of_matrix("[1224, 0, 1263, 0, 1230, 696, 0, 0, 1]"), "1263, 696 is not near the middle of 1280 x 720"),
         (of_matrix("[306, 0, 315.7, 0, 307, 174, 0, 0, 1]"), r"315\.7, 174 is not near the middle of 1280 x 720"),
         (of_matrix("[612, 1.2, 631.5, 0, 615, 348, 0, 0, 1]"), "a skew of 1.2 px is not modelled"),
+        (
+            of_matrix("[3.6, 0, 631.5, 0, 3.6, 348, 0, 0, 1]"),
+            "3.6 and 3.6 px: are they in millimetres",
+        ),
         ("cam0: {camera_model: pinhole}", "missing required field `intrinsics`"),
     ],
 )
