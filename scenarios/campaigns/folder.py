@@ -23,6 +23,7 @@ from scenarios.campaigns.plan import Plan
 from scenarios.recordings.result import write_json
 
 _SHOWN = 60  # characters of what a line says
+_PLAN_BYTES_MAX = 256 << 20  # a cell takes 20 kB
 _PLAN, _JOURNAL, _LANDINGS, _TIMING = "campaign.json", "landings.jsonl", "landings.parquet", "timing.parquet"
 
 
@@ -51,7 +52,7 @@ def read_plan(folder: Path) -> Plan:
     """
     path = folder / _PLAN
     try:
-        table = json.loads(read_bounded(path))
+        table = json.loads(read_bounded(path, _PLAN_BYTES_MAX))
     except OSError as error:
         raise UserError(f"{path}: cannot be read ({error.strerror}); is this a campaign's folder?") from None
     except (ValueError, RecursionError):
