@@ -70,14 +70,14 @@ def ids_text(ids: frozenset[int]) -> str:
 
 def _doubled_line(ids: frozenset[int]) -> str:
     return (
-        f"the board is read but not reported: tags {ids_text(ids)} are seen at two places, and which board is the pad "
-        "cannot be told; cover one, or print it with other ids (--first-id)"
+        f"the board is read but not reported: tags seen at two places are {ids_text(ids)}; which of two boards is the "
+        "pad cannot be told: cover one, or print it with other ids (--first-id)"
     )
 
 
 def _odd_line(ids: frozenset[int]) -> str:
     return (
-        f"the board is read but not reported: tags {ids_text(ids)} are not where the --board file has them; measure "
+        f"the board is read but not reported: tags not where the --board file has them are {ids_text(ids)}; measure "
         "sides and places of the printed tags, and see whether the --calibration is of this camera"
     )
 
