@@ -53,13 +53,19 @@ def looks_down(message: Message) -> bool:
     return bool(message.orientation == mavlink.MAV_SENSOR_ROTATION_PITCH_270)
 
 
-def _range_reading(message: Message, clock: ClockMap, own_at: OwnAt) -> RangeReading | None:
-    """Return what a range finder that looks down sees; at or beyond its range's ends it sees nothing."""
-    t_ns = clock.boot_to_utc_ns(message.time_boot_ms * 1_000_000)
+def distance_below_m(message: Message) -> float | None:
+    """Return what a range finder that looks down sees, m; at or beyond its range's ends it sees nothing."""
     is_within = message.min_distance < message.current_distance < message.max_distance
-    if t_ns is None or not (is_within and looks_down(message)) or message.signal_quality == _INVALID:
+    if not (is_within and looks_down(message)) or message.signal_quality == _INVALID:
         return None
-    return RangeReading(t_ns=t_ns, distance_m=message.current_distance * _CM, own=own_at(t_ns))
+    return float(message.current_distance) * _CM
+
+
+def _range_reading(message: Message, clock: ClockMap, own_at: OwnAt) -> RangeReading | None:
+    t_ns, distance_m = clock.boot_to_utc_ns(message.time_boot_ms * 1_000_000), distance_below_m(message)
+    return (
+        None if t_ns is None or distance_m is None else RangeReading(t_ns=t_ns, distance_m=distance_m, own=own_at(t_ns))
+    )
 
 
 def with_fix(receiver: Receiver, message: Message) -> Receiver:

@@ -10,6 +10,7 @@ from companion.check.rules import judge
 from companion.check.vehicle_assessment import assess_vehicle
 from companion.config.autopilot import AutopilotKind
 from companion.config.companion import CompanionConfig
+from companion.config.touchdown import RangeFinderConfig
 
 MOTION = ("LOCAL_POSITION_NED", "ATTITUDE_QUATERNION")
 _MOTION_RATE_MIN_HZ = 40.0
@@ -44,7 +45,7 @@ def assess(
     found += [_heights(autopilot, config.autopilot.geoid_height_m), _clock(autopilot), *_utc(autopilot, speed_m_s)]
     found += [_rate(autopilot, name) for name in MOTION]
     found += [_latency(autopilot), _battery(autopilot, config.limits.battery_min_share)]
-    found.append(_range_finder(autopilot))
+    found += [_range_finder(autopilot), *_range_at_rest(autopilot, config.touchdown.range_finder)]
     if autopilot.autopilot_id in FIRMWARES:
         rules = FIRMWARES[autopilot.autopilot_id].rules_for(config.descent.sink.rate_max_m_s, launches=launches)
         found += judge(rules, autopilot.parameters, speed_m_s)
@@ -176,6 +177,17 @@ def _range_finder(seen: AutopilotFacts) -> Finding:
     advice = "fit one, or compare drone and pad at rest before each day's first landing (docs/vehicle.md)"
     reason = "nothing else tells that own or vehicle's height is wrong by less than 2 m: PX4's moved by 0.5 m in 8 s"
     return make_finding("range finder", text, pass_or(seen.has_range_finder, Level.WARN), advice, reason)
+
+
+def _range_at_rest(seen: AutopilotFacts, config: RangeFinderConfig) -> list[Finding]:
+    """Return whether what is seen where the drone stands is as far away as the feet are."""
+    if seen.range_at_rest_m is None:
+        return []
+    is_at_feet = abs(seen.range_at_rest_m - config.height_m) <= config.contact_height_max_m
+    text = f"{seen.range_at_rest_m:.2f} m, {config.height_m:g} are set"
+    advice = f"if it stands on level ground, set touchdown.range_finder.height_m to {seen.range_at_rest_m:.2f}"
+    reason = "the feet's height above the pad is told by it less this: with 0.5 m too much no contact is believed"
+    return [make_finding("range at rest", text, pass_or(is_at_feet, Level.WARN), advice, reason)]
 
 
 def assess_links(open_to_strangers: Sequence[str]) -> list[Finding]:

@@ -26,6 +26,7 @@ class AutopilotFacts:
         rates_hz: of the messages that the companion asks for, by name.
         latency_s: median from a position's stamp to its arrival.
         has_range_finder: it tells what one sees that looks down.
+        range_at_rest_m: what that sees while the motors are off; None with motors on, or where it sees nothing.
         battery_share: left, 0 to 1.
         parameters: by name, in its own units.
     """
@@ -45,6 +46,7 @@ class AutopilotFacts:
     rates_hz: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
     latency_s: float | None = None
     has_range_finder: bool = False
+    range_at_rest_m: float | None = None
     battery_share: float | None = None
     parameters: Mapping[str, float] = field(default_factory=lambda: MappingProxyType({}))
 

@@ -4,7 +4,7 @@ import statistics
 from collections import Counter, deque
 
 from companion.autopilots.geoid import geoid_height_m
-from companion.autopilots.sensor_reports import battery_share, is_of_first_battery, looks_down
+from companion.autopilots.sensor_reports import battery_share, distance_below_m, is_of_first_battery, looks_down
 from companion.check.assessment import MOTION
 from companion.check.firmwares import FIRMWARES
 from companion.check.observation import AutopilotFacts
@@ -124,6 +124,7 @@ class Reader:
             rates_hz={name: self._counts[name] / self.listened_s for name in MOTION} if self.listened_s else {},
             latency_s=statistics.median(self._latencies_s) if self._latencies_s else None,
             has_range_finder="DISTANCE_SENSOR" in self._newest,
+            range_at_rest_m=self._range_at_rest_m(),
             battery_share=self._battery_share(),
             parameters=dict(self._parameters),
         )
@@ -190,6 +191,12 @@ class Reader:
     def _geoid_height_m(self) -> float | None:
         message = self._newest.get("GPS_RAW_INT")
         return None if message is None else geoid_height_m(None, message)
+
+    def _range_at_rest_m(self) -> float | None:
+        seen, beat = self._newest.get("DISTANCE_SENSOR"), self._newest.get("HEARTBEAT")
+        if seen is None or beat is None or beat.base_mode & mavlink.MAV_MODE_FLAG_SAFETY_ARMED:
+            return None
+        return distance_below_m(seen)
 
     def _battery_share(self) -> float | None:
         message = self._newest.get("BATTERY_STATUS")

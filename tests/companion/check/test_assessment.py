@@ -35,6 +35,7 @@ GOOD = AutopilotFacts(
     latency_s=0.01,
     battery_share=0.9,
     has_range_finder=True,
+    range_at_rest_m=0.2,
     parameters={
         **PX4_DEFAULTS,
         "MPC_Z_VEL_MAX_DN": 2.0,
@@ -75,6 +76,7 @@ def test_everything_in_order_is_all_pass() -> None:
         ({"battery_share": 0.2}, "battery", Level.FAIL),
         ({"battery_share": None}, "battery", Level.WARN),
         ({"has_range_finder": False}, "range finder", Level.WARN),
+        ({"range_at_rest_m": 0.62}, "range at rest", Level.WARN),
     ],
 )
 def test_autopilot_amiss_is_told(changed: dict[str, Any], line: str, level: Level) -> None:

@@ -54,6 +54,18 @@ def test_range_finder_downwards_is_found_among_sectors_around_the_drone(
 
 
 @pytest.mark.parametrize(
+    ("base_mode", "seen_cm", "at_rest_m"),
+    [(0, 62, 0.62), (mavlink.MAV_MODE_FLAG_SAFETY_ARMED, 62, None), (0, 20, None), (0, 1200, None)],
+)
+def test_range_at_rest_is_what_is_seen_within_the_range_with_the_motors_off(
+    base_mode: int, seen_cm: int, at_rest_m: float | None
+) -> None:
+    beat = mavlink.MAVLink_heartbeat_message(2, mavlink.MAV_AUTOPILOT_PX4, base_mode, 0, 3, 3)
+    seen = mavlink.MAVLink_distance_sensor_message(1000, 20, 1200, seen_cm, 0, 0, DOWN, 0)
+    assert heard(beat, seen).facts().range_at_rest_m == at_rest_m
+
+
+@pytest.mark.parametrize(
     ("fix", "ellipsoid_mm", "height_m"), [(3, 400_000, 0.0), (3, 447_300, 47.3), (3, 0, None), (1, 447_300, None)]
 )
 def test_geoid_is_read_off_the_receiver_as_in_flight(fix: int, ellipsoid_mm: int, height_m: float | None) -> None:
