@@ -216,8 +216,8 @@ def print_table(findings: Sequence[Finding], speed_m_s: float) -> None:
     table = Table(box=SIMPLE_HEAD, title=f"for a vehicle at {speed_m_s:g} m/s", title_justify="left")
     table.add_column("")
     table.add_column("what", no_wrap=True)
-    table.add_column("found")
-    table.add_column("what to do, and why")
+    table.add_column("found", overflow="fold")
+    table.add_column("what to do, and why", overflow="fold")
     for one in findings:
         to_do = ": ".join(part for part in (one.advice, one.reason) if part)
         table.add_row(one.level.value, one.name, one.found, to_do, style=_STYLES[one.level])

@@ -7,6 +7,7 @@ import pytest
 
 from companion.autopilots.choice import driver_for
 from companion.check.assessment import MOTION, assess
+from companion.check.command import print_table
 from companion.check.findings import Level, advised_values, is_ready
 from companion.check.observation import AutopilotFacts
 from companion.config.companion import CompanionConfig
@@ -180,3 +181,12 @@ def test_geoid_of_the_configuration_is_as_good_as_one_that_is_told() -> None:
     for facts, config in ((untold, configured({"autopilot": {"geoid_height_m": 47.3}}, CONFIG)), (GOOD, CONFIG)):
         by_name = {one.name: one for one in assess(facts, VEHICLE, 10.0, config)}
         assert by_name["heights"].level is Level.PASS
+
+
+def test_table_of_a_narrow_terminal_cuts_no_name(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv("COLUMNS", "80")
+    print_table(assess(replace(GOOD, range_at_rest_m=0.62), VEHICLE, 5.0, CONFIG), 5.0)
+    cells = "".join(line.rstrip().rpartition("  ")[2] for line in capsys.readouterr().out.splitlines())
+    assert "touchdown.range_finder.height_m" in cells
