@@ -58,16 +58,9 @@ class CameraWatch(Struct, frozen=True, kw_only=True):
 def note_frame(watch: CameraWatch, shades: Gray, now_ns: int) -> CameraWatch:
     """Return the watch after a frame that came at `now_ns`."""
     gaps_ns = () if watch.shades is None else (*watch.gaps_ns, now_ns - watch.came_ns)[-_GAPS:]
-    changed_ns = watch.changed_ns if is_repeated(watch, shades) else now_ns
+    is_repeated = watch.shades is not None and np.array_equal(watch.shades, shades)
+    changed_ns = watch.changed_ns if is_repeated else now_ns
     return CameraWatch(came_ns=now_ns, changed_ns=changed_ns, shades=shades, gaps_ns=gaps_ns)
-
-
-def is_repeated(watch: CameraWatch, shades: Gray) -> bool:
-    """Return whether a picture is the last one again: the noise of a living sensor changes some pixels each time.
-
-    Its stamp is new and what it shows is old: the pad would be reported to move with the drone.
-    """
-    return watch.shades is not None and np.array_equal(watch.shades, shades)
 
 
 def failure_of(watch: CameraWatch, now_ns: int) -> Failure | None:
@@ -160,9 +153,9 @@ class EyesLoop:
         now_ns = time.monotonic_ns()
         self._service.alive(now_ns)
         if captured is not None:
-            if not (self._source.is_live and is_repeated(watch, captured.shades)):
-                self._look(captured, now_ns)
             watch = note_frame(watch, captured.shades, now_ns)
+            if watch.changed_ns == now_ns or not self._source.is_live:
+                self._look(captured, now_ns)
         self._tell_refused()
         for line in self._node.take_news():
             self._log.info(line)

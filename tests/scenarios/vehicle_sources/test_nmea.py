@@ -200,14 +200,18 @@ _ODD = ("", "nan", "inf", "1e308", "-1", "1_0", "240000.00", "9" * 12, "9" * 400
 
 
 @given(st.lists(st.tuples(st.integers(0, 15), st.integers(1, 11), st.sampled_from(_ODD)), min_size=1, max_size=4))
-def test_no_field_of_a_whole_sentence_makes_it_raise(changes: list[tuple[int, int, str]]) -> None:
+def test_no_field_of_a_whole_sentence_makes_it_raise_or_tell_what_is_no_number(
+    changes: list[tuple[int, int, str]],
+) -> None:
     bodies = [line[1:].decode().partition("*")[0] for line in drive(3).splitlines()]
     bodies += ["GPZDA,120000.00,09,11,2026,00,00", "GPVTG,77.5,T,,M,9.7,N,18,K,A"]
     for which, place, text in changes:
         fields = bodies[which % len(bodies)].split(",")
         fields[place % len(fields) or 1] = text
         bodies[which % len(bodies)] = ",".join(fields)
-    read(*map(sentence, bodies))
+    for reading in read(*map(sentence, bodies)):
+        told = (getattr(reading, name) for name in reading.__struct_fields__)
+        assert np.all(np.isfinite(np.concatenate([np.ravel(one) for one in told if one is not None]).astype(float)))
 
 
 def test_day_and_angle_of_more_digits_than_they_have_are_none() -> None:
