@@ -121,7 +121,10 @@ def test_liveliness_tells_of_coming_and_going(endpoint: str) -> None:
 def test_liveliness_of_who_came_earlier_is_seen(pair: tuple[ZenohSession, ZenohSession]) -> None:
     vehicle, companion = pair
     vehicle.declare_alive("ns/vehicle/alive")
-    until(companion, lambda: companion.watch_alive("ns/vehicle/alive").alive)
+    before = companion.watch_alive("ns/vehicle/alive")
+    until(companion, lambda: before.alive)
+    after = companion.watch_alive("ns/vehicle/alive")
+    until(companion, lambda: after.alive)
 
 
 def test_liveliness_notices_a_killed_process(endpoint: str) -> None:
