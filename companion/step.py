@@ -12,9 +12,10 @@ from companion.landing.flying import fly
 from companion.landing.orders import drive
 from companion.landing.outputs import landing_status, news, news_of_sortie, setpoint
 from companion.landing.sortie.phases import over_deck
+from companion.landing.sortie.riding import place_by_deck
 from companion.landing.state.memory import ModelMemory, StepMemory, to_present_frame
 from companion.landing.state.step_data import StepInputs, StepOutputs, System
-from companion.landing.state.vehicle_update import place_by_deck, predict_pad, update_vehicle
+from companion.landing.state.vehicle_update import predict_pad, update_vehicle
 from companion.landing.steering.losing import lost_for_s
 from companion.landing.steering.regain import regain
 from companion.landing.steering.virtual_model import (
@@ -129,6 +130,7 @@ def _situation(memory: StepMemory, pad: PadPath | None, inputs: StepInputs, syst
             is_pad_doubted=inputs.vehicle.is_pad_doubted,
             are_sightings_mixed=vehicle.sightings.are_mixed,
             has_unplaced_sightings=inputs.vehicle.has_unplaced_sightings,
+            has_receiver_stepped=vehicle.phases.has_stepped,
             has_pad_stepped=vehicle.sightings.has_stepped,
             is_road_elsewhere=bool(vehicle.is_road_elsewhere),
             has_shown_heading=vehicle.course.has_agreed,

@@ -8,8 +8,9 @@ while the drone's receiver has no fix, whoever says what: its autopilot goes on 
 
 A fixed carrier phase errs by a quarter of its wavelength at most, which is what reflections do to it
 (Hofmann-Wellenhof, Lichtenegger and Collins, "GPS: Theory and Practice", 5th edition, multipath): who states more has
-not fixed it. One that steps by more than two such errors has been fixed wrongly, before or after. Until it has been
-fixed anew nobody knows where it is. The drone's has stepped by what its place has and its local frame has not.
+not fixed it. One that steps by more than two such errors has been fixed wrongly, before or after, and one that slides
+away from what its velocities tell is led astray (`slide`). Until it has been fixed anew nobody knows where it is. The
+drone's has stepped by what its place has and its local frame has not.
 """
 
 import math
@@ -37,7 +38,7 @@ class FixedPhases(Struct, frozen=True, kw_only=True):
         vehicle_std_m: that the newest fix of the vehicle states horizontally, None before the first.
         since_ns: monotonic, since when both have had fixed phases without a break; None while one has not.
         steps: of the vehicle's place, when they were last counted.
-        has_vehicle_stepped: by more than fixed phases err, while both had them.
+        has_vehicle_stepped: by more than fixed phases err, while both had them, or slid.
         stamps_off_s: by how much its stamps have stepped since, as its places tell; 0 once they have gone back.
         fixed_moves: of the drone's place and of its local frame, when both had fixed phases first.
         has_drone_stepped: since then, by more than fixed phases err.
@@ -136,6 +137,11 @@ def with_place_step(
     return replace(before, steps=count, stamps_off_s=0.0 if is_back else off_s)
 
 
+def with_slide(before: FixedPhases) -> FixedPhases:
+    """Return what both receivers say once the vehicle's places have slid away from what its velocities tell."""
+    return replace(before, has_vehicle_stepped=True)
+
+
 def without_place_step(before: FixedPhases) -> FixedPhases:
     """Return what both receivers say where the steps so far were those of an estimate that was led astray."""
     return replace(before, has_vehicle_stepped=False, stamps_off_s=0.0)
@@ -168,10 +174,13 @@ def are_frames_one(phases: FixedPhases, configured: ReceiverFrames, monotonic_ns
 _FRAME_REMEDIES = {
     ReceiverFrames.AUTO: "use a pattern detector, RTK on both from one source, or --receiver-frames one where they are "
     "known to have one",
-    ReceiverFrames.ONE: "the drone's has lost its fix, or the place of one has stepped: wait until it is fixed anew, "
-    "or use a pattern detector",
+    ReceiverFrames.ONE: "the drone's has lost its fix: wait until it has one again, or use a pattern detector",
     ReceiverFrames.APART: "use a pattern detector, or RTK on both from one source and --receiver-frames auto",
 }
+_STEPPED_REMEDY = (
+    "the place of one has stepped, or changes otherwise than its velocities say: wait until its phases are fixed anew, "
+    "or use a pattern detector"
+)
 
 
 def tell_unseen(s: Situation, config: CompanionConfig) -> Cause:
@@ -180,7 +189,9 @@ def tell_unseen(s: Situation, config: CompanionConfig) -> Cause:
         return Cause(Reason.SIGHTINGS_UNPLACED)
     if config.silent_vehicle is not None:
         return Cause(Reason.PAD_NOT_SEEN)
-    return Cause(Reason.OFFSET_UNKNOWN, (_FRAME_REMEDIES[config.integrity.receiver_frames],))
+    configured = config.integrity.receiver_frames
+    has_stepped = s.vehicle.has_receiver_stepped and configured is not ReceiverFrames.APART
+    return Cause(Reason.OFFSET_UNKNOWN, (_STEPPED_REMEDY if has_stepped else _FRAME_REMEDIES[configured],))
 
 
 def _was_unfixed(phases: FixedPhases, monotonic_ns: int) -> bool:

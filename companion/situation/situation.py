@@ -66,6 +66,7 @@ class VehicleNews(Struct, frozen=True, kw_only=True):
         is_pad_doubted: it describes another pad now than the one that is flown to.
         are_sightings_mixed: what the drone sees of the pad contradicts itself.
         has_unplaced_sightings: what lately came of its pad is stamped when nobody knew where the drone was.
+        has_receiver_stepped: its place, or the drone's, has stepped or slid since its phases were fixed.
         has_pad_stepped: it is seen elsewhere on the vehicle than where it was confirmed.
         is_road_elsewhere: it is said to be higher or lower than any hill puts it.
         has_shown_heading: its course has agreed with its heading.
@@ -82,6 +83,7 @@ class VehicleNews(Struct, frozen=True, kw_only=True):
     is_pad_doubted: bool = False
     are_sightings_mixed: bool = False
     has_unplaced_sightings: bool = False
+    has_receiver_stepped: bool = False
     has_pad_stepped: bool = False
     is_road_elsewhere: bool = False
     has_shown_heading: bool = True

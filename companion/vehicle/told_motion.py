@@ -1,8 +1,8 @@
 """The places and velocities that a receiver has told lately, window by window; pure.
 
 What differs between the way that its velocities tell and that between its places shows how late velocities are
-(`velocity_lag`), and of which point they are told (`velocity_point`). A velocity between two stamps is on the straight
-line between its neighbours.
+(`velocity_lag`), of which point they are told (`velocity_point`), and whether places slide (`integrity/slide`). A
+velocity between two stamps is on the straight line between its neighbours.
 """
 
 from collections.abc import Sequence
@@ -33,11 +33,13 @@ class Window(NamedTuple):
     Attributes:
         begun: the place at which it begins.
         ended: the place at which it ends.
+        places: from the one to the other, with both.
         velocities: from the one to the other, at both ends, too.
     """
 
     begun: Told
     ended: Told
+    places: tuple[Told, ...]
     velocities: tuple[Told, ...]
 
     @property
@@ -81,7 +83,12 @@ def take_told(motion: ToldMotion, measurements: Sequence[Measurement]) -> tuple[
         return ToldMotion(places=places, velocities=velocities), None
     begun, ended = ends
     inside = (one for one in velocities if begun.t_ns < one.t_ns < ended.t_ns)
-    window = Window(begun, ended, (_at(velocities, begun.t_ns), *inside, _at(velocities, ended.t_ns)))
+    window = Window(
+        begun=begun,
+        ended=ended,
+        places=tuple(one for one in places if begun.t_ns <= one.t_ns <= ended.t_ns),
+        velocities=(_at(velocities, begun.t_ns), *inside, _at(velocities, ended.t_ns)),
+    )
     rest = tuple(one for one in places if one.t_ns >= ended.t_ns)
     return ToldMotion(places=rest, velocities=velocities), None if _has_gap(window.velocities) else window
 

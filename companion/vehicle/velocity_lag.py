@@ -48,13 +48,26 @@ class VelocityLag(Struct, frozen=True, kw_only=True):
         return min(max(self.product_per_s / self.information_per_s2, 0.0), _LAG_MAX_S) if self.is_known else 0.0
 
     @property
+    def error_s(self) -> float:
+        """By which dated velocities may be older or younger than the places, at most."""
+        if (estimate := self._estimate()) is None:
+            return _LAG_MAX_S
+        lag_s, error_s = estimate
+        return min(error_s if self.is_known else abs(lag_s) + error_s, _LAG_MAX_S)
+
+    @property
     def is_significant(self) -> bool:
         """Whether it is large enough to matter, and too large for an error."""
+        estimate = self._estimate()
+        return estimate is not None and estimate[0] > max(_LAG_MIN_S, estimate[1])
+
+    def _estimate(self) -> tuple[float, float] | None:
+        """Return the lag by least squares, and by how much that may err; None while nothing tells it."""
         if self.windows < 2.0 or self.information_per_s2 == 0.0:
-            return False
+            return None
         lag_s = self.product_per_s / self.information_per_s2
         scatter = max((self.squares - self.product_per_s * lag_s) / (self.windows - 1.0), 1.0)
-        return lag_s > max(_LAG_MIN_S, _STDS * math.sqrt(scatter / self.information_per_s2))
+        return lag_s, _STDS * math.sqrt(scatter / self.information_per_s2)
 
 
 def dated_velocities(lag: VelocityLag, measurements: Sequence[Measurement]) -> tuple[Measurement, ...]:
@@ -76,7 +89,7 @@ def learn_lag(lag: VelocityLag, measurements: Sequence[Measurement]) -> Velocity
 
 
 def _with_window(lag: VelocityLag, window: Window) -> VelocityLag:
-    begun, ended, velocities = window
+    begun, ended, velocities = window.begun, window.ended, window.velocities
     first, last, lasted_s = velocities[0], velocities[-1], window.lasted_s
     east_m_s, north_m_s = window.mean_m_s
     speed_m_s = math.hypot(east_m_s, north_m_s)

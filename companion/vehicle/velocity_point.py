@@ -19,6 +19,7 @@ from link.records import replace
 
 _MEMORY_S = 300.0  # the point does not change, but who drives may tell more
 _ARM_MIN_M = 0.3  # less is off by 0.1 m/s in a tight bend, 0.3 rad/s: little more than a receiver's own error
+_ARM_MAX_M = 15.0  # half a coach, and what a velocity that is a second late looks like at 10 m/s in a bend
 _STDS = 4.0
 _SPEED_MIN_M_S = 1.0  # from which on a course is one
 _TURN_OVER_NS = 450_000_000  # over which the course tells how the vehicle turns, five velocities at 10 Hz
@@ -53,14 +54,33 @@ class VelocityPoint(Struct, frozen=True, kw_only=True):
         return self.ahead_per_m / self.information_per_m2, self.left_per_m / self.information_per_m2
 
     @property
+    def error_m(self) -> float:
+        """By which the point may be elsewhere, at most."""
+        if (estimate := self._estimate()) is None:
+            return _ARM_MAX_M
+        arm_m, error_m = estimate
+        return min(error_m if self.is_known else arm_m + error_m, _ARM_MAX_M)
+
+    @property
+    def reach_m(self) -> float:
+        """How far from the antenna the point may be, at most, whether or not that is known."""
+        estimate = self._estimate()
+        return _ARM_MAX_M if estimate is None else min(sum(estimate), _ARM_MAX_M)
+
+    @property
     def is_significant(self) -> bool:
         """Whether it is far enough from the antenna to matter, and too far for an error."""
+        estimate = self._estimate()
+        return estimate is not None and estimate[0] > max(_ARM_MIN_M, estimate[1])
+
+    def _estimate(self) -> tuple[float, float] | None:
+        """Return how far the point is by least squares, and by how much that may err; None while nothing tells it."""
         if self.windows < 2.0 or self.information_per_m2 == 0.0:
-            return False
+            return None
         product = math.hypot(self.ahead_per_m, self.left_per_m)
         arm_m = product / self.information_per_m2
         scatter = max(0.5 * (self.squares - product * arm_m) / (self.windows - 1.0), 1.0)
-        return arm_m > max(_ARM_MIN_M, _STDS * math.sqrt(scatter / self.information_per_m2))
+        return arm_m, _STDS * math.sqrt(scatter / self.information_per_m2)
 
 
 def learn_point(point: VelocityPoint, measurements: Sequence[Measurement]) -> VelocityPoint:
@@ -100,7 +120,7 @@ def _of_antenna(point: VelocityPoint, velocity: Measurement) -> Measurement:
 
 
 def _with_window(point: VelocityPoint, window: Window) -> VelocityPoint:
-    begun, ended, velocities = window
+    begun, ended, velocities = window.begun, window.ended, window.velocities
     lasted_s, (east_m_s, north_m_s) = window.lasted_s, window.mean_m_s
     (ux_0, uy_0), (ux_1, uy_1) = _course(velocities[0]), _course(velocities[-1])
     dx, dy = ux_1 - ux_0, uy_1 - uy_0

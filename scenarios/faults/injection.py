@@ -18,6 +18,7 @@ _ESTIMATE_RESET_ENU_M = (3.0, -2.0, 1.0)
 _HOUR_S = 3600.0
 _STAMPS_OFF_S = -0.06  # a receiver's stamps may be those of its output instead of its measurement
 _SLEW = -5e-4  # the most by which an NTP daemon changes a clock's rate: ntpd(8), adjtimex(2)
+_SLIDE_ENU_M_S = (0.2, 0.0, 0.0)  # ahead of a vehicle that drives east: a receiver still states centimetres
 _SPOILT_SHARE = 0.01
 
 
@@ -90,6 +91,7 @@ _INJECT: Mapping[Fault, Callable[[FaultFlight, float], None]] = {
     Fault.CLOCK_AHEAD: lambda flight, _: flight.simulation.vehicle.set_clock(_HOUR_S),
     Fault.CLOCK_BACK: lambda flight, _: flight.simulation.vehicle.set_clock(-_HOUR_S),
     Fault.STAMPS: lambda flight, _: flight.set_vehicle_clock(_STAMPS_OFF_S, _SLEW),
+    Fault.SLIDE: lambda flight, _: flight.simulation.vehicle.slide_fixes(_SLIDE_ENU_M_S),
     Fault.SPOILT: lambda flight, _: flight.spoil_links(_SPOILT_SHARE),
     Fault.SECOND_COMPANION: lambda flight, _: flight.add_companion(),
     Fault.SECOND_DRONE: lambda flight, _: flight.add_drone(),

@@ -39,6 +39,7 @@ class Fault(Enum):
     CLOCK_AHEAD = "vehicle's clock set an hour ahead"
     CLOCK_BACK = "vehicle's clock set an hour back"
     STAMPS = "vehicle's stamps 60 ms early, drifting"
+    SLIDE = "vehicle's fixes slide by 0.2 m/s"
     SPOILT = "1 % of frames corrupt, 1 % cut"
     SECOND_COMPANION = "second companion for the drone"
     SECOND_DRONE = "another drone was first on the vehicle"
@@ -143,6 +144,7 @@ def _matrix(firmware: FirmwareName) -> _Rows:
     0.3 m at 5 m/s. ArduCopter takes a new speed limit as it enters the mode, so a descent that has begun goes on.
     """
     breaks_off = ((_BEFORE, _WAITS), (_APPROACH, _HOLDS), (_ON_THE_PAD, _LANDS), (_BROKEN_OFF, _HOLDS))
+    slides = (((*_BEFORE, *_APPROACH, *_BROKEN_OFF), _HOLDS), (_ON_THE_PAD, _LANDS))
     lets_go = ((_IN_THE_AIR, _IS_OUT), (_ON_THE_PAD, _IS_OUT_ON_PAD))
     return {
         **_rows(firmware, Fault.PILOT, *lets_go),
@@ -165,6 +167,7 @@ def _matrix(firmware: FirmwareName) -> _Rows:
         **_rows(firmware, Fault.CLOCK_AHEAD, *breaks_off),
         **_rows(firmware, Fault.CLOCK_BACK, *breaks_off),
         **_rows(firmware, Fault.STAMPS, *breaks_off),
+        **_rows(firmware, Fault.SLIDE, *slides),
         **_rows(firmware, Fault.SPOILT, *_GOES_ON),
         **_rows(firmware, Fault.SECOND_COMPANION, *_GOES_ON),
         **_rows(firmware, Fault.SECOND_DRONE, *breaks_off),

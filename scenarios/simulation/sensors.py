@@ -49,8 +49,10 @@ class _FixSensor:
         self._mounting = mounting
         self._offset_enu_m = offset_enu_m
         self._datum = datum
+        self.slide_enu_m_s: Vector3 = (0.0, 0.0, 0.0)
 
     def sample(self, stamp_ns: int, vehicle: VehicleState, elapsed_s: float) -> Fix:
+        self._offset_enu_m = total(self._offset_enu_m, scaled(self.slide_enu_m_s, elapsed_s))
         lever_m = rotate(vehicle.orientation_wxyz, self._mounting.antenna_flu_m)
         errors_m = (self._offset_enu_m, self._bias.step(elapsed_s), white_error_m(self._config, self._rng))
         position_enu_m = total(vehicle.position_enu_m, lever_m, *errors_m)
@@ -159,8 +161,8 @@ class SensorSuite:
         self._offset_s, self._drift = clock[0] * config.clock.offset_max_s, clock[1] * config.clock.drift_max
         angle_rad = float(named_rng(seed, "frame offset").uniform(0.0, 2.0 * math.pi))
         offset_enu_m = (config.frame_offset_m * math.cos(angle_rad), config.frame_offset_m * math.sin(angle_rad), 0.0)
-        fix = _FixSensor(config.fix, seed, mounting=mounting, offset_enu_m=offset_enu_m, datum=datum)
-        self._on_vehicle: list[_FixSensor | _VelocitySensor | InertialUnit] = [fix]
+        self._fix = _FixSensor(config.fix, seed, mounting=mounting, offset_enu_m=offset_enu_m, datum=datum)
+        self._on_vehicle: list[_FixSensor | _VelocitySensor | InertialUnit] = [self._fix]
         if config.velocity is not None:
             self._on_vehicle.append(_VelocitySensor(config.velocity, seed, mounting=mounting))
         if config.imu is not None:
@@ -174,6 +176,10 @@ class SensorSuite:
         self._offset_s += ahead_s
         if self._clock is not None:
             self._clock = replace(self._clock, offset_s=self._offset_s)
+
+    def slide_fixes(self, by_enu_m_s: Vector3) -> None:
+        """Let the fixes slide away from now on, as of a receiver that is led astray; its velocities stay true."""
+        self._fix.slide_enu_m_s = by_enu_m_s
 
     def step(self, t_ns: int, vehicle: VehicleState, drone: BodyTruth | None) -> list[Sample]:
         """Take the samples that are due at `t_ns` and return those that leave by then, in the order of leaving."""

@@ -7,7 +7,7 @@ import math
 from functools import partial
 
 from link.frames.geodesy import Datum
-from link.messages import BodyTruth, Fix, FixVelocity, PadGeometry, PadSighting, VehicleImu
+from link.messages import BodyTruth, Fix, FixVelocity, PadGeometry, PadSighting, Vector3, VehicleImu
 from link.payloads import cdr
 from link.program.extras import require
 from link.zenoh.keys import Keys, Publication
@@ -80,6 +80,10 @@ class VehicleNode:
     def set_clock(self, ahead_s: float) -> None:
         """Set the vehicle's clock ahead by `ahead_s`."""
         self._sensors.set_clock(ahead_s)
+
+    def slide_fixes(self, by_enu_m_s: Vector3) -> None:
+        """Let the vehicle's fixes slide away from now on; its velocities stay true."""
+        self._sensors.slide_fixes(by_enu_m_s)
 
     def step(self, t_ns: int, drone: BodyTruth | None) -> list[Publication]:
         """Return what is to be published at `t_ns`, truth first; a time that has not advanced yields nothing.

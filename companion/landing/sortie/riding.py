@@ -1,4 +1,4 @@
-"""A drone that stands on the vehicle: whether that carries it off, and where its setpoints are; pure."""
+"""A drone that stands on the vehicle: what carries it off, where its setpoints are, what shows the pad; pure."""
 
 import math
 
@@ -6,15 +6,19 @@ import numpy as np
 
 from companion.autopilots.messages import may_turn
 from companion.config.companion import CompanionConfig
+from companion.core.data import Measurement, Quantity
 from companion.core.reasons import Cause, Reason
 from companion.integrity.heights import VEHICLE_M
 from companion.landing.decisions.conditions import Condition, cause_of, holds
 from companion.landing.decisions.entries import Decision
 from companion.landing.sortie.over_vehicle import ON_ROOF_M, stands_on_deck
-from companion.landing.state.memory import ControlMemory, Held
+from companion.landing.state.memory import ControlMemory, Held, VehicleMemory
+from companion.landing.state.step_data import StepInputs, System
 from companion.planning.guidance import ReferenceState
 from companion.situation.phases import Event, Phase
 from companion.situation.situation import Drone, Situation, vehicle_stands
+from companion.vehicle.pad import PadPath
+from link.records import replace
 
 _LIFT_M = 0.3  # so far above it a drone on the deck is asked to be, for PX4 takes off towards a setpoint above it
 
@@ -115,3 +119,24 @@ def call_off(held: Held, control: ControlMemory, s: Situation, config: Companion
         return None
     turns = may_turn(s.autopilot, control.driver, s.monotonic_ns)
     return Event.CARRIED_OFF if turns else Event.CALLED_OFF, cause_of(CARRIED_OFF, s, config)
+
+
+def place_by_deck(vehicle: VehicleMemory, pad: PadPath | None, inputs: StepInputs, system: System) -> VehicleMemory:
+    """Return what is known of the vehicle once a drone is about to lift off its pad: how far apart the frames are.
+
+    Where they are one, what is missing to the pad's middle is how the drone was put there.
+    """
+    own, config = inputs.own, system.config
+    if own is None or pad is None or pad.has_one_frame or vehicle.estimator is None:
+        return vehicle
+    feet_enu_m = own.position_enu_m - np.array([0.0, 0.0, config.touchdown.gear_height_m])
+    stands = Measurement(
+        t_ns=own.t_ns,
+        quantity=Quantity.PAD,
+        value=feet_enu_m,
+        covariance=config.sortie.launch.placed_std_m**2 * np.eye(3),
+    )
+    estimator = system.estimator.fuse(vehicle.estimator, [stands])
+    counted = system.estimator.health(estimator).counts(Quantity.PAD)  # it is none of a detector's
+    sightings = replace(vehicle.sightings, counted=counted, is_confirmed=True)
+    return replace(vehicle, estimator=estimator, sightings=sightings)

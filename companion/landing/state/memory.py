@@ -19,6 +19,7 @@ from companion.forecast.gusts import Gusts
 from companion.integrity.contradictions import Contradictions
 from companion.integrity.frames import FixedPhases
 from companion.integrity.sightings import SightingWatch
+from companion.integrity.slide import FixSlide
 from companion.integrity.stamps import FixStamps
 from companion.integrity.vehicle_data import CourseWatch
 from companion.landing.steering.flown_plan import FlownPlan
@@ -79,6 +80,7 @@ class VehicleMemory(Struct, frozen=True, kw_only=True, eq=False):
         estimator: the estimator's own memory.
         velocity_lag: by how much its velocities are older than its places.
         velocity_point: of which point they are.
+        slide: whether its places slide away from the way that its velocities tell.
         hindsight: how the vehicle has driven, and how late that is known.
         fix_stamps: whether its fixes come from the future, and whether a clock was set.
         contradictions: of its data.
@@ -94,6 +96,7 @@ class VehicleMemory(Struct, frozen=True, kw_only=True, eq=False):
     estimator: EstimatorMemory | None = None
     velocity_lag: VelocityLag = field(default_factory=VelocityLag)
     velocity_point: VelocityPoint = field(default_factory=VelocityPoint)
+    slide: FixSlide = field(default_factory=FixSlide)
     hindsight: Hindsight = field(default_factory=Hindsight)
     fix_stamps: FixStamps = field(default_factory=FixStamps)
     contradictions: Contradictions = field(default_factory=Contradictions)

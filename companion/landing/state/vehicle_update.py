@@ -12,9 +12,11 @@ from companion.integrity.frames import (
     has_lost_fix,
     update_fixed_phases,
     with_place_step,
+    with_slide,
     without_place_step,
 )
 from companion.integrity.sightings import SightingWatch, forget_agreement, forget_step, update_sightings
+from companion.integrity.slide import FixSlide, update_slide
 from companion.integrity.stamps import FixStamps, is_step_of_stamps, update_fix_stamps
 from companion.integrity.vehicle_data import without_contradicted_heading
 from companion.integrity.way import way_error
@@ -44,30 +46,27 @@ def update_vehicle(vehicle: VehicleMemory, inputs: StepInputs, system: System) -
     estimator, now_ns = vehicle.estimator, inputs.monotonic_ns
     lag = learn_lag(vehicle.velocity_lag, inputs.vehicle.measurements)
     is_lag_new = lag.is_known and not vehicle.velocity_lag.is_known
-    measurements, seen = dated_velocities(lag, inputs.vehicle.measurements), inputs.autopilot.range_down
-    point = learn_point(VelocityPoint() if is_lag_new else vehicle.velocity_point, measurements)
-    measurements = velocities_of_antenna(point, measurements)
-    if seen is not None and estimator is not None and _is_to_be_read(seen, vehicle.ranges, inputs.t_ns):
-        then = system.estimator.forecast(estimator, seen.t_ns, _PRESENT_OFFSETS_S)
-        vehicle_up_m = None if then is None else float(then.position_enu_m[0, 2])
-        ranges, rises_m = watch_ranges(vehicle.ranges, seen, vehicle_up_m)
-        vehicle = replace(vehicle, ranges=ranges)
-        if rises_m is not None:
-            apart_std_m = 0.0 if _are_frames_one(vehicle, inputs, system) else math.inf
-            measurements += surface_measurements(seen, rises_m, inputs.t_ns, system.config.touchdown, apart_std_m)
+    dated = dated_velocities(lag, inputs.vehicle.measurements)
+    point = learn_point(VelocityPoint() if is_lag_new else vehicle.velocity_point, dated)
+    was_told_wrong = is_lag_new or (point.is_known and not vehicle.velocity_point.is_known)
+    vehicle, seen = _seen_below(vehicle, inputs, system)
+    measurements = velocities_of_antenna(point, dated) + seen
     way = way_error(system.estimator, estimator, measurements)
     if measurements:
         estimator = system.estimator.fuse(estimator, measurements)
     sightings, phases, led_astray = vehicle.sightings, vehicle.phases, inputs.vehicle.has_doubted_unit
     contradictions = Contradictions() if led_astray else vehicle.contradictions
-    newest_fix_ns = system.estimator.newest_fix_ns(estimator)
+    newest_fix_ns, is_of_stamps = system.estimator.newest_fix_ns(estimator), False
     if newest_fix_ns is not None and newest_fix_ns != vehicle.fix_stamps.newest_ns:
         is_of_stamps = is_step_of_stamps(vehicle.fix_stamps, (inputs.t_ns - newest_fix_ns) * 1e-9, way)
         place_step = system.estimator.health(estimator).place_step
         phases = with_place_step(phases, place_step, way if is_of_stamps else None)
-    is_point_new = point.is_known and not vehicle.velocity_point.is_known
-    if is_lag_new or is_point_new or led_astray:
+    if was_told_wrong or led_astray:
         phases = without_place_step(phases)  # what was told wrong has led the estimate away
+    slide = FixSlide() if was_told_wrong or is_of_stamps else vehicle.slide
+    slide = update_slide(slide, dated, lag, point)
+    if slide.has_slid:
+        phases = with_slide(phases)
     if contradictions.is_due(now_ns):
         health = system.estimator.health(estimator)
         contradictions = update_contradictions(contradictions, health, now_ns)
@@ -79,6 +78,7 @@ def update_vehicle(vehicle: VehicleMemory, inputs: StepInputs, system: System) -
         estimator=estimator,
         velocity_lag=lag,
         velocity_point=point,
+        slide=slide,
         hindsight=update_hindsight(vehicle.hindsight, system.estimator, estimator, inputs.t_ns, monotonic_ns=now_ns),
         fix_stamps=update_fix_stamps(
             vehicle.fix_stamps,
@@ -98,6 +98,24 @@ def update_vehicle(vehicle: VehicleMemory, inputs: StepInputs, system: System) -
             moves=inputs.autopilot.frame_moves,
         ),
     )
+
+
+def _seen_below(
+    vehicle: VehicleMemory, inputs: StepInputs, system: System
+) -> tuple[VehicleMemory, tuple[Measurement, ...]]:
+    """Return the vehicle with what the drone's range finder has just seen, and what that tells of the roof."""
+    seen, estimator = inputs.autopilot.range_down, vehicle.estimator
+    if seen is None or estimator is None or not _is_to_be_read(seen, vehicle.ranges, inputs.t_ns):
+        return vehicle, ()
+    then = system.estimator.forecast(estimator, seen.t_ns, _PRESENT_OFFSETS_S)
+    vehicle_up_m = None if then is None else float(then.position_enu_m[0, 2])
+    ranges, rises_m = watch_ranges(vehicle.ranges, seen, vehicle_up_m)
+    vehicle = replace(vehicle, ranges=ranges)
+    if rises_m is None:
+        return vehicle, ()
+    apart_std_m = 0.0 if _are_frames_one(vehicle, inputs, system) else math.inf
+    told = surface_measurements(seen, rises_m, inputs.t_ns, system.config.touchdown, apart_std_m)
+    return vehicle, tuple(told)
 
 
 def _refused_age_s(stamps: FixStamps, newest_fix_ns: int | None, inputs: StepInputs, system: System) -> float | None:
@@ -151,7 +169,7 @@ def _in_present_frame(vehicle: VehicleMemory, inputs: StepInputs, system: System
     if now == before:
         return vehicle
     if now.origin_count != before.origin_count:
-        return replace(vehicle, estimator=None, ranges=RangeWatch(), frame_moves=now)
+        return replace(vehicle, estimator=None, slide=FixSlide(), ranges=RangeWatch(), frame_moves=now)
     estimator, seen_m = vehicle.estimator, between(before.shift_enu_m, now.shift_enu_m)
     if estimator is not None:
         told_m = between(before.origin_shift_enu_m, now.origin_shift_enu_m)
@@ -162,7 +180,8 @@ def _in_present_frame(vehicle: VehicleMemory, inputs: StepInputs, system: System
         steps = [_frame_step(now.stepped_ns, seen_m, np.zeros(3), variance_m2)] if seen_m.any() else []
         steps += [_frame_step(told_ns, np.zeros(3), told_m, 0.0)] if told_m.any() else []
         estimator = system.estimator.fuse(estimator, steps)
-    return replace(vehicle, estimator=estimator, ranges=moved_up(vehicle.ranges, float(seen_m[2])), frame_moves=now)
+    ranges = moved_up(vehicle.ranges, float(seen_m[2]))
+    return replace(vehicle, estimator=estimator, slide=FixSlide(), ranges=ranges, frame_moves=now)
 
 
 def _frame_step(t_ns: int, seen_m: Array, told_m: Array, variance_m2: float) -> Measurement:
@@ -195,27 +214,6 @@ def predict_pad(
             vehicle = replace(vehicle, sightings=forget_agreement(sightings))
         return vehicle, without_contradicted_heading(pad, vehicle.course)
     return replace(vehicle, estimator=None), None
-
-
-def place_by_deck(vehicle: VehicleMemory, pad: PadPath | None, inputs: StepInputs, system: System) -> VehicleMemory:
-    """Return what is known of the vehicle once a drone is about to lift off its pad: how far apart the frames are.
-
-    Where they are one, what is missing to the pad's middle is how the drone was put there.
-    """
-    own, config = inputs.own, system.config
-    if own is None or pad is None or pad.has_one_frame or vehicle.estimator is None:
-        return vehicle
-    feet_enu_m = own.position_enu_m - np.array([0.0, 0.0, config.touchdown.gear_height_m])
-    stands = Measurement(
-        t_ns=own.t_ns,
-        quantity=Quantity.PAD,
-        value=feet_enu_m,
-        covariance=config.sortie.launch.placed_std_m**2 * np.eye(3),
-    )
-    estimator = system.estimator.fuse(vehicle.estimator, [stands])
-    counted = system.estimator.health(estimator).counts(Quantity.PAD)  # it is none of a detector's
-    sightings = replace(vehicle.sightings, counted=counted, is_confirmed=True)
-    return replace(vehicle, estimator=estimator, sightings=sightings)
 
 
 def _are_frames_one(vehicle: VehicleMemory, inputs: StepInputs, system: System) -> bool:

@@ -20,6 +20,7 @@ SOME = (
     Case(fault=Fault.ESTIMATE, phase=Phase.CHASE),
     Case(fault=Fault.COMPANION_STOPPED_LONG, phase=Phase.DESCEND),
     Case(fault=Fault.VEHICLE_STOPPED, phase=Phase.CHASE, firmware="ardupilot"),
+    Case(fault=Fault.SLIDE, phase=Phase.DESCEND, firmware="ardupilot"),
     Case(fault=Fault.SPOILT, phase=Phase.CHASE),
 )
 
