@@ -65,8 +65,8 @@ def update_vehicle(vehicle: VehicleMemory, inputs: StepInputs, system: System) -
         phases = without_place_step(phases)  # what was told wrong has led the estimate away
     slide = FixSlide() if was_told_wrong or is_of_stamps else vehicle.slide
     slide = update_slide(slide, dated, lag, point)
-    if slide.has_slid:
-        phases = with_slide(phases)
+    if slide.has_slid and not phases.has_vehicle_stepped:
+        phases, sightings = with_slide(phases), forget_agreement(sightings)
     if contradictions.is_due(now_ns):
         health = system.estimator.health(estimator)
         contradictions = update_contradictions(contradictions, health, now_ns)

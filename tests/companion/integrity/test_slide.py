@@ -13,7 +13,9 @@ from companion.config.integrity import IntegrityConfig, ReceiverFrames
 from companion.core.data import FIXED_STD_MAX_M, Measurement, Quantity
 from companion.core.reasons import sentence
 from companion.integrity.frames import FixedPhases, are_frames_one, tell_unseen, update_fixed_phases, with_slide
+from companion.integrity.sightings import SightingWatch
 from companion.integrity.slide import FixSlide, update_slide
+from companion.landing.state.vehicle_update import update_vehicle
 from companion.vehicle.velocity_lag import VelocityLag, dated_velocities, learn_lag
 from companion.vehicle.velocity_point import VelocityPoint, learn_point
 from link.records import replace
@@ -31,6 +33,7 @@ from tests.companion.vehicle.drives import (
     straight,
 )
 from tests.companion.vehicle.rides import arrivals, now_ns
+from tests.companion.world import Flight
 
 SLIDES_FROM_S = 8.0
 DRIVES = {
@@ -149,6 +152,16 @@ def test_vehicle_that_slides_has_a_frame_again_once_its_phases_are_fixed_anew() 
         )
         slid = update_fixed_phases(slid, [fix], now_ns(t_s), drone=drone, moves=NO_MOVES)
         assert slid.has_stepped is (t_s < 3.0)
+
+
+def test_slide_takes_what_sightings_have_told_until_others_agree() -> None:
+    flight = Flight()
+    confirmed = SightingWatch(agreeing=40, since_ns=0, is_confirmed=True, was_confirmed=True)
+    vehicle = replace(flight.memory.vehicle, slide=FixSlide(has_slid=True), sightings=confirmed)
+    slid = update_vehicle(vehicle, flight.inputs(), flight.system)
+    assert not slid.sightings.is_confirmed
+    again = replace(slid, sightings=confirmed)
+    assert update_vehicle(again, flight.inputs(), flight.system).sightings.is_confirmed
 
 
 @pytest.mark.parametrize("configured", [ReceiverFrames.AUTO, ReceiverFrames.ONE])
