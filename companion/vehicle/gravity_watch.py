@@ -40,8 +40,8 @@ class GravityWatch:
             force_flu_m_s2: along the vehicle's axes.
             q_WV: its attitude, None of a unit that tells none.
         """
-        x, y, z = (min(max(one, -FORCE_MAX_M_S2), FORCE_MAX_M_S2) for one in force_flu_m_s2)
-        felt_m_s2 = (x, y, z) if q_WV is None else _level((x, y, z), q_WV)
+        bounded_m_s2 = bounded_force(force_flu_m_s2)
+        felt_m_s2 = bounded_m_s2 if q_WV is None else _level(bounded_m_s2, q_WV)
         passed_s = 0.0 if self._newest_ns is None else min(max((t_ns - self._newest_ns) * 1e-9, 0.0), STEP_MAX_S)
         self._newest_ns = t_ns
         self._heard_s += passed_s
@@ -72,6 +72,12 @@ class GravityWatch:
         if math.hypot(ahead_m_s2, left_m_s2) > _LEVEL_MAX_M_S2:
             return False
         return abs(up_m_s2) <= _UP_MAX_M_S2 or abs(up_m_s2 - GRAVITY_M_S2) <= _OFF_MAX_M_S2
+
+
+def bounded_force(force_m_s2: Vector3) -> Vector3:
+    """Return a specific force with no axis beyond what counts, so that turning it leaves numbers."""
+    x, y, z = (min(max(one, -FORCE_MAX_M_S2), FORCE_MAX_M_S2) for one in force_m_s2)
+    return x, y, z
 
 
 def _level(force_flu_m_s2: Vector3, q_WV: Quaternion) -> Vector3:

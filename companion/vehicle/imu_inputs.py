@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from companion.core.data import Measurement, Quantity
+from companion.vehicle.gravity_watch import bounded_force
 from companion.vehicle.unit_watch import UnitWatch
 from link.frames.rotations import roll_pitch_yaw_of, rotate, yaw_of
 from link.messages import Matrix3, Quaternion, Vector3, VehicleImu
@@ -55,7 +56,8 @@ def _acceleration(message: VehicleImu, unit: UnitWatch) -> Measurement | None:
     unit.gravity.take(message.t_ns, force_m_s2, q_WV)
     if q_WV is not None:
         is_level = _knows_tilt(message.orientation_covariance_rad2)
-        unit.pushes.take_force(message.t_ns, forward_m_s2, yaw_of(q_WV), is_level=is_level)
+        felt_m_s2 = _forward_force_m_s2(bounded_force(force_m_s2), q_WV)
+        unit.pushes.take_force(message.t_ns, felt_m_s2, yaw_of(q_WV), is_level=is_level)
     if not unit.believes_acceleration:
         return None
     covariance = message.specific_force_covariance_m2_s4

@@ -105,10 +105,11 @@ def plausible(measurement: Measurement) -> Measurement:
         raise PayloadError(f"the {quantity.value} {measurement.value.tolist()} is absurd")
     if not all(abs(value) < covariance_max for value in covariance.ravel().tolist()):
         raise PayloadError(f"the covariance {covariance.tolist()} of the {quantity.value} is absurd")
-    least = _STD_MIN[quantity] ** 2
-    if _least_variance(covariance) >= least:
+    least, stated = _STD_MIN[quantity] ** 2, _least_variance(covariance)
+    if stated >= least:
         return measurement
-    return replace(measurement, covariance=covariance + least * np.eye(len(covariance)))
+    # Single precision leaves a direction that is known well, beside one that is not, less than no variance.
+    return replace(measurement, covariance=covariance + (least - min(stated, 0.0)) * np.eye(len(covariance)))
 
 
 def _least_variance(covariance: Array) -> float:

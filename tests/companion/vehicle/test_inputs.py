@@ -26,6 +26,7 @@ from link.frames.rotations import quaternion_from_roll_pitch_yaw
 from link.messages import Fix, FixVelocity, Matrix3, PadSighting, Vector3, VehicleImu
 from link.payloads import cdr
 from link.payloads.checks import PayloadError
+from link.payloads.ros_fields import matrix3
 from link.records import replace
 from link.zenoh.keys import Keys
 from tests.companion.world import FRAME, ORIGIN, START_NS, own_state
@@ -226,6 +227,21 @@ def test_covariance_that_is_singular_is_widened_to_what_sensors_can_do(variances
     widened = plausible(replace(fix, covariance=np.diag(variances)))
     assert np.linalg.eigvalsh(widened.covariance)[0] >= 0.005**2
     assert np.all(widened.covariance >= np.diag(variances))
+
+
+def test_covariance_that_rounding_leaves_less_than_no_variance_is_widened_to_what_sensors_can_do() -> None:
+    turn = Rotation.from_euler("zyx", (0.7, 0.05, -0.04)).as_matrix()
+    rounded = (turn @ np.diag([4e-4, 4e-4, 9e7]) @ turn.T).astype(np.float32).astype(np.float64)
+    assert np.linalg.eigvalsh(rounded)[0] < -0.005
+    state = AutopilotState(view=replace(NO_AUTOPILOT, frame=FRAME))
+    message = FixVelocity(
+        t_ns=START_NS,
+        velocity_enu_m_s=(5.0, 0.3, 0.1),
+        velocity_covariance_enu_m2_s2=matrix3(rounded.ravel()),
+        is_vertical_measured=True,
+    )
+    (velocity,) = measurements_of(KEYS.fix_velocity, cdr.encode(message), KEYS, state, UnitWatch())
+    assert np.linalg.eigvalsh(velocity.covariance)[0] > 0.5 * 0.01**2
 
 
 def test_covariance_in_order_is_left_alone() -> None:

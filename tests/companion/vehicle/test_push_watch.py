@@ -12,6 +12,7 @@ from companion.vehicle.imu_inputs import imu_measurements
 from companion.vehicle.unit_watch import UnitWatch
 from link.frames.rotations import quaternion_from_roll_pitch_yaw
 from link.messages import Matrix3, Vector3, VehicleImu
+from link.records import replace
 
 PERIOD_S = 0.02
 YAW_RAD = 0.6
@@ -123,6 +124,27 @@ def test_one_absurd_number_says_nothing_of_the_others(wrong: float, *, of_force:
         if index % 5 == 0:
             told_m_s = wrong if is_wrong and not of_force else speed_m_s
             unit.pushes.take_velocity(t_ns, (told_m_s, 0.0, 0.0), 0.01)
+        assert unit.pushes.is_believed
+
+
+def test_one_force_too_large_to_be_turned_says_nothing_of_the_others() -> None:
+    unit, speed_m_s = UnitWatch(), 0.0
+    tilted = (-0.2702, 0.4332, -0.7904, 0.3386)
+    for index in range(800):
+        force_m_s2 = town(index * PERIOD_S)
+        speed_m_s += force_m_s2 * PERIOD_S
+        imu = VehicleImu(
+            t_ns=index * 20_000_000,
+            orientation_wxyz=(1.0, 0.0, 0.0, 0.0),
+            orientation_covariance_rad2=LEVEL,
+            specific_force_flu_m_s2=(force_m_s2, 0.0, GRAVITY_M_S2),
+        )
+        if index == 101:
+            imu = replace(imu, orientation_wxyz=tilted, specific_force_flu_m_s2=(1e308, 1.7e308, 1e308))
+        with np.errstate(over="ignore", invalid="ignore"):
+            imu_measurements(imu, unit)
+        if index % 5 == 0:
+            unit.pushes.take_velocity(imu.t_ns, (speed_m_s, 0.0, 0.0), 0.01)
         assert unit.pushes.is_believed
 
 
