@@ -3,6 +3,8 @@
 A limit that was never told counts as the firmware's default, so what is known by none of its names is asked for again,
 for as long as that takes. Some firmware has no parameter of one name or another: then the question costs little.
 A parameter may have been changed while nobody was heard, so that all are asked for again after a restart or a silence.
+What has just changed and changes again is asked for later: with each gain the plan's matrices are made anew, and on a
+small computer that takes longer than a step.
 """
 
 import math
@@ -108,14 +110,16 @@ class LimitQuestions:
     def __init__(self) -> None:
         self._due_ns: dict[str, int] = {}
         self._told: set[str] = set()
+        self._held_until_ns: dict[str, int] = {}
         self._asks_all = True
 
     def ask_all(self) -> None:
         """Ask for every parameter once more."""
         self._told.clear()
+        self._held_until_ns.clear()
         self._asks_all = True
 
-    def hear(self, message: Message, driver: Driver, known: Mapping[str, float]) -> Mapping[str, float]:
+    def hear(self, message: Message, driver: Driver, known: Mapping[str, float], local_ns: int) -> Mapping[str, float]:
         """Return what is known after a PARAM_VALUE; the same object where that changes nothing.
 
         Somebody else may have asked for it, or changed it: autopilots tell everybody.
@@ -123,8 +127,17 @@ class LimitQuestions:
         name, value = message.param_id, parameter_value(message, driver.autopilot_id)
         if value is None or not any(name in names for names in parameter_names(driver)):
             return known
+        held_until_ns = self._held_until_ns.get(name, local_ns)
+        if known.get(name) != value and local_ns < held_until_ns:
+            self._told.discard(name)
+            self._due_ns[name] = held_until_ns
+            return known
         self._told.add(name)
-        return known if known.get(name) == value else {**known, name: float(value)}
+        if known.get(name) == value:
+            return known
+        if name in known:
+            self._held_until_ns[name] = local_ns + _ASK_AGAIN_NS
+        return {**known, name: float(value)}
 
     def unanswered(self, name: str, local_ns: int) -> None:
         """Take note that the autopilot has not answered for `name`."""

@@ -175,7 +175,7 @@ class AutopilotLink:
         if self._late.is_late(message, local_ns):
             return
         if message.get_type() == "PARAM_VALUE":
-            parameters = self._questions.hear(message, driver, self.state.parameters)
+            parameters = self._questions.hear(message, driver, self.state.parameters, local_ns)
             self.state = replace(self.state, parameters=parameters)
         elif message.get_type() == "RC_CHANNELS":
             self.pilot_switch.hear(message, local_ns)
