@@ -11,6 +11,9 @@ import pytest
 from hypothesis import settings
 
 from link.program.clock import collect_rarely, spare_present_objects
+from link.program.start import ONE_THREAD
+
+os.environ.update(ONE_THREAD | os.environ)  # as the programs do, before any test's numerics are loaded
 
 settings.register_profile("repeatable", derandomize=True, deadline=None)
 settings.register_profile("quick", derandomize=True, deadline=None, max_examples=20)  # make check

@@ -19,11 +19,11 @@ from loky.backend import resource_tracker
 from loky.process_executor import ProcessPoolExecutor
 
 from link.errors import UserError
+from link.program.start import ONE_THREAD
 from scenarios.processes.launch import end_with_parent
 from scenarios.processes.pool import Result, Task, Workers
 
 _FAILED_STARTS_MAX = 3  # in a row
-_ONE_THREAD = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")  # the processes share the cores already
 _EXIT_CODES = re.compile(r"exit codes of the workers are \{(.*?)\}")
 
 
@@ -104,9 +104,7 @@ class LocalWorkers(Workers[Task, Result]):
 
 
 def _start(job: Callable[[Any], Any]) -> _Worker:
-    executor = ProcessPoolExecutor(
-        max_workers=1, initializer=_load, initargs=(os.getpid(), job), env=dict.fromkeys(_ONE_THREAD, "1")
-    )
+    executor = ProcessPoolExecutor(max_workers=1, initializer=_load, initargs=(os.getpid(), job), env=ONE_THREAD)
     with _without_interrupt():
         return _Worker(executor=executor, loaded=executor.submit(_wait_for_load))
 
