@@ -22,13 +22,12 @@ _REDUCTION = 2  # of a picture of 1280 x 720 what the panel's width shows
 
 
 def pixels_of(picture: CompressedPicture) -> NDArray[np.uint8] | None:
-    """Return the pixels (rows, columns, 3), reduced, None of bytes that are no picture."""
+    """Return the pixels (rows, columns, 3), reduced, None of bytes that are no picture; of a moving one, the first."""
     try:
-        found: Any = iio.imread(io.BytesIO(picture.data), plugin="pillow")
-    except (OSError, ValueError, SyntaxError):  # what pillow raises of bytes that are something else
+        found = iio.imread(io.BytesIO(picture.data), plugin="pillow", index=0, mode="RGB")
+    except Exception:  # noqa: BLE001 (pillow raises whatever its decoders meet, such as IndexError and struct.error)
         return None
-    small = np.asarray(found, np.uint8)[::_REDUCTION, ::_REDUCTION]
-    return np.ascontiguousarray(np.repeat(small[:, :, None], 3, axis=2) if small.ndim == 2 else small[:, :, :3])
+    return np.ascontiguousarray(np.asarray(found, np.uint8)[::_REDUCTION, ::_REDUCTION])
 
 
 _RATES = ("0.25", "0.5", "1", "2", "4")

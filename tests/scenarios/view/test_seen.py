@@ -3,6 +3,7 @@
 from typing import Any, cast
 
 import cv2
+import imageio.v3 as iio
 import numpy as np
 import pytest
 
@@ -48,6 +49,15 @@ def test_picture_is_shown_in_half_its_size_whether_gray_or_not(shape: tuple[int,
 @pytest.mark.parametrize("data", [b"", b"no picture", bytes(range(256)) * 4])
 def test_bytes_that_are_no_picture_show_nothing(data: bytes) -> None:
     assert pixels_of(CompressedPicture(t_ns=7, format="jpeg", data=data)) is None
+
+
+def test_moving_picture_shows_its_first_one_and_cut_short_anywhere_never_raises() -> None:
+    first = np.full((12, 8, 3), (200, 40, 90), np.uint8)
+    data = iio.imwrite("<bytes>", np.stack((first, 255 - first)), extension=".gif")
+    shown = [pixels_of(CompressedPicture(t_ns=7, format="gif", data=data[:end])) for end in range(len(data) + 1)]
+    assert shown[-1] is not None
+    assert shown[-1].tolist() == first[::2, ::2].tolist()
+    assert {one.shape for one in shown if one is not None} == {(6, 4, 3)}
 
 
 def test_foxglove_has_each_picture_once() -> None:
