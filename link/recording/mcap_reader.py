@@ -3,6 +3,7 @@
 Anybody may have made a file: what is damaged is one clear line, and nothing in it says how much memory is taken.
 """
 
+import math
 import struct
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -47,17 +48,21 @@ class RecordingHead:
         """
         return self._found(self.metadata, name)
 
-    def number(self, name: str) -> int:
+    def number(self, name: str, least: int, most: float = math.inf) -> int:
         """Return a whole number of the metadata.
 
         Raises:
-            UserError: it is not there, or none.
+            UserError: it is not there, none, or not from `least` to `most`.
         """
         text = self.value(name)
         try:
-            return int(text)
+            found = int(text)
         except ValueError:
-            raise UserError(f"{self.path}: its {name} is no number: {text[:_SHOWN]!r}") from None
+            found = least - 1
+        if not least <= found <= most:
+            bounds = f"from {least} on" if math.isinf(most) else f"from {least} to {most}"
+            raise UserError(f"{self.path}: its {name} is no whole number {bounds}: {text[:_SHOWN]!r}")
+        return found
 
     def attachment(self, name: str) -> str:
         """Return the text of an attached file.

@@ -147,7 +147,7 @@ def outputs_of(flight: Flight, config: CompanionConfig) -> dict[str, list[RosMes
     node = build_node(
         config,
         flight.keys,
-        system_id=flight.head.number("system_id"),
+        system_id=flight.head.number("system_id", 1, 255),
         dry_run=flight.head.value("dry_run") == "true",
         is_component=True,  # where ground stations were not heard, none has said anything
         recorder=recorder,

@@ -116,7 +116,7 @@ def _road(truth: list[Path]) -> Road | None:
     if "scenario.toml" not in head.attachments or "seed" not in head.metadata:
         return None
     table = parse_toml(head.attachment("scenario.toml"), f"scenario.toml of {head.path}")
-    return Road(scenario=validate(Scenario, table, source="scenario.toml"), seed=head.number("seed"))
+    return Road(seed=head.number("seed", 0), scenario=validate(Scenario, table, source="scenario.toml"))
 
 
 def _merge(*recordings: list[Path]) -> Iterator[Recorded]:

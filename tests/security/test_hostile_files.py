@@ -20,9 +20,11 @@ from link.errors import UserError
 from link.mavlink.signing import read_key
 from link.program.toml_config import parse_toml, read_toml
 from link.recording.mcap_reader import read_head, read_messages
+from link.zenoh.keys import Keys
 from scenarios.campaigns.folder import read_landings, read_plan
-from scenarios.recordings.replay import read_flights
+from scenarios.recordings.replay import Flight, read_flights, replay
 from scenarios.reports.run_data import read_result
+from scenarios.view.recorded import RecordedSource
 
 MAGIC = b"\x89MCAP0\r\n"
 DEEP = "[" * 200_000
@@ -107,6 +109,28 @@ def test_gigabyte_in_a_few_kilobytes_is_not_unpacked(tmp_path: Path) -> None:
     path.write_bytes(MAGIC + chunk(bomb(), 100))
     with pytest.raises(UserError, match=f"a chunk of {GB} bytes"):
         read(path)
+
+
+@pytest.mark.parametrize("text", ["0", "256", "-3", "999999", "9" * 400, "one"])
+def test_system_id_that_no_drone_has_is_one_line(tmp_path: Path, text: str) -> None:
+    path = tmp_path / "companion_000.mcap"
+    path.write_bytes(recording(lambda writer: writer.add_metadata("more", {"system_id": text})))
+    flight = Flight(head=read_head(path), keys=Keys("ns", "car", "drone"), inputs=(), outputs={})
+    with pytest.raises(UserError, match="its system_id is no whole number from 1 to 255"):
+        replay(flight)
+
+
+@pytest.mark.parametrize("text", ["-1", "one"])
+def test_seed_that_no_run_has_is_one_line(tmp_path: Path, text: str) -> None:
+    path = tmp_path / "truth_000.mcap"
+
+    def of_run(writer: Writer) -> None:
+        writer.add_metadata("more", {"seed": text})
+        writer.add_attachment(0, 0, "scenario.toml", "text/plain", b"")
+
+    path.write_bytes(recording(of_run))
+    with pytest.raises(UserError, match="its seed is no whole number from 0 on"):
+        RecordedSource(path)
 
 
 @settings(max_examples=60)
