@@ -35,6 +35,7 @@ from link.program.text import printable
 from link.records import replace
 
 _LATE_MAX_MS = HISTORY_NS // 1_000_000  # what is older says that the clock was set back
+_TEXTS_MAX = 50  # that wait; each is a line of the log, which has room for some beside the companion's own
 _AHEAD_NS = 100_000_000  # how far a report is carried beyond the newest one
 
 
@@ -127,7 +128,7 @@ def _said(state: AutopilotState, message: Message, driver: Driver) -> AutopilotS
     if refusal is not None and not state.view.armed:
         state = replace(state, view=replace(state.view, refusal=printable(refusal)))
     text = refusal if message.get_type() == "EVENT" else f"{message.text}"
-    return state if text is None else replace(state, texts=(*state.texts, printable(text)))
+    return state if text is None else replace(state, texts=(*state.texts[1 - _TEXTS_MAX :], printable(text)))
 
 
 def _position(state: AutopilotState, message: Message, clock: ClockMap) -> AutopilotState:
@@ -176,10 +177,9 @@ def _attitude(state: AutopilotState, message: Message) -> AutopilotState:
         return state
     if 0 <= state.attitude_boot_ms - message.time_boot_ms <= _LATE_MAX_MS or not message.time_boot_ms:
         return state  # a newer one has come already, or nobody knows when it was
-    orientation = normalized(quaternion_enu_flu_from_ned_frd(q))
     return replace(
         state,
-        orientation_wxyz=orientation,
+        orientation_wxyz=normalized(quaternion_enu_flu_from_ned_frd(q)),
         angular_velocity_flu_rad_s=flu_from_frd(rates),
         attitude_boot_ms=message.time_boot_ms,
     )

@@ -454,3 +454,11 @@ def test_stop_within_one_report_is_a_jolt_and_hard_braking_is_none() -> None:
     )
     assert braking.own is not None
     assert braking.own.jolt_m_s2 == pytest.approx(10.0)
+
+
+def test_of_a_flood_of_texts_the_newest_wait_for_the_log() -> None:
+    texts = [mavlink.MAVLink_statustext_message(6, f"text {number}".encode()) for number in range(300)]
+    state = AutopilotState()
+    for text in texts:
+        state = update_state(state, text, CLOCK, ArduPilotDriver())
+    assert state.texts == tuple(f"text {number}" for number in range(250, 300))
