@@ -19,6 +19,7 @@ from scenarios.vehicle_sources.health import Health
 from scenarios.vehicle_sources.receiver import Reading, Receiver
 
 _WAIT_S = 0.1  # for bytes; a signal is seen within it
+_GAP_MAX_S, _BACK_MAX_S = 60.0, 1.0  # between readings of a recording; a receiver begins with a date that is years off
 
 
 class ReceiverLoop:
@@ -60,6 +61,7 @@ class ReceiverLoop:
         self._was_connected = False
         self._unsendable = self._fixes = 0
         self._began: tuple[int, float] | None = None  # a recording: its first stamp, and when that was told
+        self._newest_ns = 0  # of a recording, the stamp that was told last
         self._log = log
         payload = json_messages.encode(pad)
         zenoh.serve(keys.pad, lambda _: payload)
@@ -147,10 +149,12 @@ class ReceiverLoop:
             self._fixes += isinstance(reading, Fix)
 
     def _publish_in_time(self, readings: list[Reading]) -> None:
-        """Publish a recording's readings as far apart as they were."""
+        """Publish a recording's readings as far apart as they were; where its clock was set, it goes on at once."""
         for reading in readings:
-            if self._began is None:
+            passed_s = (reading.t_ns - self._newest_ns) * 1e-9
+            if self._began is None or not -_BACK_MAX_S <= passed_s <= _GAP_MAX_S:
                 self._began = (reading.t_ns, time.monotonic())
+            self._newest_ns = reading.t_ns
             first_ns, told_s = self._began
             while not self._stopping and (wait_s := told_s + (reading.t_ns - first_ns) * 1e-9 - time.monotonic()) > 0.0:
                 self._zenoh.wake_up.wait(min(wait_s, _WAIT_S))

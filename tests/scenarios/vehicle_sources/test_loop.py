@@ -5,8 +5,9 @@ import time
 import weakref
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from types import SimpleNamespace
-from typing import cast
+from typing import Self, cast
 
 import pytest
 
@@ -17,8 +18,10 @@ from link.transports.tcp_transport import TcpClientTransport
 from link.transports.transport import Transport
 from link.zenoh.keys import Keys
 from link.zenoh.session import ZenohSession
+from scenarios.vehicle_sources.channel import FileTransport
 from scenarios.vehicle_sources.loop import ReceiverLoop
 from scenarios.vehicle_sources.nmea import NmeaReceiver
+from tests.scenarios.vehicle_sources.sentences import drive, sentence
 
 OPENED_MAX = 20
 PAD = PadGeometry(size_m=(1.5, 1.5), height_m=1.5, antenna_to_pad_m=(0.0, 0.0, 0.0))
@@ -61,7 +64,24 @@ class Network:
 
 
 class NoZenoh:
-    """A session that nobody listens to."""
+    """A session that nobody listens to, with a clock that only waiting moves on."""
+
+    def __init__(self) -> None:
+        self.now_s = 0.0
+        self.told_s: list[float] = []
+        """When each fix was published."""
+
+    @property
+    def wake_up(self) -> Self:
+        return self
+
+    def wait(self, timeout_s: float) -> None:
+        self.now_s += timeout_s
+        assert self.now_s < 60.0
+
+    def publish(self, key: str, *_: object) -> None:
+        if key == Keys().fix:
+            self.told_s.append(self.now_s)
 
     def serve(self, *_: object) -> None:
         pass
@@ -106,3 +126,31 @@ def test_connection_that_was_opened_again_is_held_no_longer(monkeypatch: pytest.
     assert len(network.opened) == OPENED_MAX
     assert network.held_max == 2
     assert all(one() is None for one in network.opened)
+
+
+@pytest.mark.parametrize("date", ["010106", "110646"], ids=["before", "after"])
+def test_recording_whose_receiver_began_with_another_date_goes_on_where_it_was_set(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, date: str
+) -> None:
+    zenoh, path = NoZenoh(), tmp_path / "drive.nmea"
+    begun = (
+        "GNGGA,115959.80,4717.11399,N,00833.91590,E,4,12,0.8,499.6,M,48.0,M,1.0,0000",
+        f"GNRMC,115959.80,A,4717.11399,N,00833.91590,E,9.719,77.52,{date},,,R",
+    )
+    path.write_bytes(b"".join(map(sentence, begun)) + drive(6))
+    clock = SimpleNamespace(monotonic_ns=lambda: round(zenoh.now_s * 1e9), monotonic=lambda: zenoh.now_s)
+    monkeypatch.setattr("scenarios.vehicle_sources.loop.time", clock)
+    loop = ReceiverLoop(
+        NmeaReceiver(),
+        lambda: FileTransport(path),
+        "a recording",
+        keys=Keys(),
+        zenoh=cast(ZenohSession, zenoh),
+        pad=PAD,
+        service=Service(),
+        log=Log("ground-vehicle"),
+    )
+    with signals_restored():
+        loop.run()
+    assert zenoh.told_s[-5:] == pytest.approx([zenoh.told_s[-6] + 0.2 * count for count in range(1, 6)])
+    assert zenoh.told_s[-1] < 2.0
