@@ -19,6 +19,7 @@ from mcap.stream_reader import StreamReader, breakup_chunk
 from link.errors import UserError
 from link.payloads.decklander_msgs import RosMessage
 from link.recording.file_names import present_files
+from link.zenoh.keys import Keys
 
 _RECORD_BYTES_MAX = 1 << 26  # a hundred times the largest chunk that is written
 _SHOWN = 40  # characters of what a file says
@@ -47,6 +48,19 @@ class RecordingHead:
             UserError: it is not there.
         """
         return self._found(self.metadata, name)
+
+    @property
+    def keys(self) -> Keys:
+        """The keys under which its messages came.
+
+        Raises:
+            UserError: one of their names is not there, or none.
+        """
+        namespace, vehicle, drone = map(self.value, ("namespace", "vehicle", "drone"))
+        try:
+            return Keys(namespace, vehicle, drone)
+        except UserError as error:
+            raise UserError(f"{self.path}: names in it are none of a key's ({error})") from None
 
     def number(self, name: str, least: int, most: float = math.inf) -> int:
         """Return a whole number of the metadata.

@@ -99,7 +99,7 @@ def _read(files: list[Path]) -> Flight:
     head = read_head(files[0])
     if CONFIG_NAME not in head.attachments:
         raise UserError(f"{files[0]}: holds no configuration; it is no recording of a companion's")
-    keys = Keys(head.value("namespace"), head.value("vehicle"), head.value("drone"))
+    keys = head.keys
     wanted = {keys.record(name) for name in OUTPUTS}
     outputs: dict[str, list[RosMessage]] = defaultdict(list)
     inputs: list[InputRecord] = []

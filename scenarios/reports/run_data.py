@@ -84,7 +84,7 @@ def read_run(folder: Path) -> RunData:
     head = read_head(recording_files(folder, COMPANION)[0])
     scenario = validate(Scenario, _attached(truth_head, "scenario.toml"), source="scenario.toml")
     config = validate(CompanionConfig, _attached(head, "companion.toml"), source="companion.toml")
-    keys = Keys(head.value("namespace"), head.value("vehicle"), head.value("drone"))
+    keys = head.keys
     truth = read_truth(folder, keys)
     try:
         log = truth_log(truth.drone, truth.vehicle, truth.rotors)

@@ -54,9 +54,7 @@ class RecordedSource:
 
     def __init__(self, path: Path) -> None:
         companion, truth, eyes = _files(path)
-        head = read_head((companion or truth)[0])
-        names = head.metadata
-        keys = Keys(names.get("namespace", "decklander"), names.get("vehicle", "vehicle"), names.get("drone", "drone"))
+        keys = read_head(companion[0]).keys if companion else Keys()
         self.road = _road(truth)
         self.history = History()
         self._states: list[ViewState] = []  # one for each row

@@ -120,6 +120,17 @@ def test_system_id_that_no_drone_has_is_one_line(tmp_path: Path, text: str) -> N
         replay(flight)
 
 
+@pytest.mark.parametrize("name", ["namespace", "vehicle", "drone"])
+@pytest.mark.parametrize("text", ["**", "", "a//b", "car?x"])
+def test_name_that_no_key_has_is_one_line(tmp_path: Path, name: str, text: str) -> None:
+    path = tmp_path / "companion_000.mcap"
+    path.write_bytes(recording(lambda writer: writer.add_metadata("more", {name: text})))
+    with pytest.raises(UserError, match=r"companion_000\.mcap: names in it are none of a key's"):
+        list(read_flights(tmp_path))
+    with pytest.raises(UserError, match=r"companion_000\.mcap: names in it are none of a key's"):
+        RecordedSource(path)
+
+
 @pytest.mark.parametrize("text", ["-1", "one"])
 def test_seed_that_no_run_has_is_one_line(tmp_path: Path, text: str) -> None:
     path = tmp_path / "truth_000.mcap"

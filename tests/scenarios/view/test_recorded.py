@@ -2,10 +2,11 @@
 
 from pathlib import Path
 
+from companion.config.companion import CompanionConfig
+from companion.recording.folder import recording_store
 from link.messages import BodyTruth
 from link.payloads import cdr
 from link.payloads.decklander_msgs import RosMessage
-from link.recording.mcap_writer import McapRecording, RecordingSpec
 from link.units import NS_PER_S
 from link.zenoh.keys import Keys
 from scenarios.view.recorded import RecordedSource
@@ -17,7 +18,7 @@ PERIOD_NS = 50_000_000
 
 def record(folder: Path, times_ns: list[int]) -> None:
     """Record the drone at `times_ns`, by the clock that tells them."""
-    recording = McapRecording(RecordingSpec(folder=folder, stem="companion"))
+    recording = recording_store(folder, CompanionConfig(), KEYS)
     for t_ns in times_ns:
         own = BodyTruth(
             t_ns=t_ns,
