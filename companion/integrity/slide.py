@@ -17,7 +17,7 @@ import numpy as np
 from msgspec import Struct
 
 from companion.core.data import FIXED_STD_MAX_M, Measurement
-from companion.vehicle.told_motion import Told, ToldMotion, Window, take_told
+from companion.vehicle.told_motion import COURSE_SPEED_MIN_M_S, Told, ToldMotion, Window, take_told
 from companion.vehicle.velocity_lag import VelocityLag
 from companion.vehicle.velocity_point import VelocityPoint
 from link.records import replace
@@ -25,7 +25,6 @@ from link.records import replace
 _KEPT = 11  # ways of 10 s: over longer ones what velocities err by steadily, a centimetre a second, adds up
 _STDS = 4.0
 _OF_MEDIAN = 0.5 * math.pi  # variance of a median over that of a mean
-_SPEED_MIN_M_S = 1.0  # from which on a course is one
 _TURN_MIN_M = 3.0  # nothing on wheels turns about a point that is nearer, but where it stands
 
 
@@ -39,7 +38,6 @@ class _Second(NamedTuple):
         place_variance_m2: of that.
         way_m: by its velocities, east and north.
         way_variance_m2: of that.
-        mean_m_s: its mean velocity.
         curvature_per_m: of its way; 0 of one that stands.
     """
 
@@ -49,8 +47,13 @@ class _Second(NamedTuple):
     place_variance_m2: float
     way_m: tuple[float, float]
     way_variance_m2: float
-    mean_m_s: tuple[float, float]
     curvature_per_m: float
+
+    @property
+    def mean_m_s(self) -> tuple[float, float]:
+        """Its mean velocity, east and north."""
+        lasted_s = (self.ended_ns - self.begun_ns) * 1e-9
+        return self.way_m[0] / lasted_s, self.way_m[1] / lasted_s
 
 
 class FixSlide(Struct, frozen=True, kw_only=True):
@@ -107,7 +110,6 @@ def _second_of(window: Window) -> _Second:
         place_variance_m2=_OF_MEDIAN * window.begun.variance / len(window.places),
         way_m=(float(way_m[-1, 0]), float(way_m[-1, 1])),
         way_variance_m2=window.lasted_s**2 * window.velocities[0].variance / len(window.velocities),
-        mean_m_s=window.mean_m_s,
         curvature_per_m=_curvature_per_m(window.velocities[0], window.velocities[-1], float(np.hypot(*way_m[-1]))),
     )
 
@@ -115,7 +117,7 @@ def _second_of(window: Window) -> _Second:
 def _curvature_per_m(first: Told, last: Told, way_m: float) -> float:
     """Return the curvature of a second's way by the courses at its ends, 0 where that may be an error."""
     product_m2_s2 = math.hypot(first.east, first.north) * math.hypot(last.east, last.north)
-    if min(product_m2_s2, way_m**2) < _SPEED_MIN_M_S**2:
+    if min(product_m2_s2, way_m**2) < COURSE_SPEED_MIN_M_S**2:
         return 0.0
     sine = (first.east * last.north - first.north * last.east) / product_m2_s2
     turned_rad = math.asin(max(-1.0, min(sine, 1.0)))
@@ -177,7 +179,7 @@ def _turn(seconds: Sequence[_Second]) -> _Turn:
     most = min(2.0, sum(map(_driven_m, seconds)) / _TURN_MIN_M)
     (east_0, north_0), (east_1, north_1) = seconds[0].mean_m_s, seconds[-1].mean_m_s
     begun_m_s, ended_m_s = math.hypot(east_0, north_0), math.hypot(east_1, north_1)
-    if min(begun_m_s, ended_m_s) < _SPEED_MIN_M_S:
+    if min(begun_m_s, ended_m_s) < COURSE_SPEED_MIN_M_S:
         return _Turn(0.0, 0.0, most)
     east, north = east_1 / ended_m_s - east_0 / begun_m_s, north_1 / ended_m_s - north_0 / begun_m_s
     return _Turn(east, north, min(most, math.hypot(east, north)))

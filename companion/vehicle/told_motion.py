@@ -13,6 +13,9 @@ from msgspec import Struct
 
 from companion.core.data import Measurement, Quantity
 
+COURSE_SPEED_MIN_M_S = 1.0
+"""From which on the direction of a velocity is a course."""
+
 _WINDOW_NS, _WINDOW_MAX_NS = 1_000_000_000, 1_500_000_000  # a brake lasts as long, and fixes tell its speed by then
 _KEPT_NS = 2_500_000_000
 _GAP_MAX_NS = 250_000_000  # between two velocities, over which the speed is a straight line; they come at 5 Hz or more

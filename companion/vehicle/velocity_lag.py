@@ -13,14 +13,13 @@ from collections.abc import Sequence
 from msgspec import Struct
 
 from companion.core.data import Measurement, Quantity
-from companion.vehicle.told_motion import ToldMotion, Window, take_told
+from companion.vehicle.told_motion import COURSE_SPEED_MIN_M_S, ToldMotion, Window, take_told
 from link.records import replace
 
 _MEMORY_S = 300.0  # a receiver's filter does not change, but who drives may tell more
 _LAG_MAX_S = 1.0  # no receiver smooths for longer: what contradicts more is a step
 _LAG_MIN_S = 0.05  # of half a period at 10 Hz; a brake of 6 m/s^2 is told wrong by 0.3 m/s, a receiver's own error
 _STDS = 4.0
-_SPEED_MIN_M_S = 1.0  # from which on a course is one
 
 
 class VelocityLag(Struct, frozen=True, kw_only=True):
@@ -93,7 +92,7 @@ def _with_window(lag: VelocityLag, window: Window) -> VelocityLag:
     first, last, lasted_s = velocities[0], velocities[-1], window.lasted_s
     east_m_s, north_m_s = window.mean_m_s
     speed_m_s = math.hypot(east_m_s, north_m_s)
-    if speed_m_s < _SPEED_MIN_M_S:
+    if speed_m_s < COURSE_SPEED_MIN_M_S:
         return lag
     ux, uy = east_m_s / speed_m_s, north_m_s / speed_m_s
     moved_m = ux * (ended.east - begun.east) + uy * (ended.north - begun.north)

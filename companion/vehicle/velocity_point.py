@@ -14,14 +14,13 @@ import numpy as np
 from msgspec import Struct
 
 from companion.core.data import Measurement, Quantity
-from companion.vehicle.told_motion import Told, ToldMotion, Window, take_told
+from companion.vehicle.told_motion import COURSE_SPEED_MIN_M_S, Told, ToldMotion, Window, take_told
 from link.records import replace
 
 _MEMORY_S = 300.0  # the point does not change, but who drives may tell more
 _ARM_MIN_M = 0.3  # less is off by 0.1 m/s in a tight bend, 0.3 rad/s: little more than a receiver's own error
 _ARM_MAX_M = 15.0  # half a coach, and what a velocity that is a second late looks like at 10 m/s in a bend
 _STDS = 4.0
-_SPEED_MIN_M_S = 1.0  # from which on a course is one
 _TURN_OVER_NS = 450_000_000  # over which the course tells how the vehicle turns, five velocities at 10 Hz
 
 
@@ -56,10 +55,8 @@ class VelocityPoint(Struct, frozen=True, kw_only=True):
     @property
     def error_m(self) -> float:
         """By which the point may be elsewhere, at most."""
-        if (estimate := self._estimate()) is None:
-            return _ARM_MAX_M
-        arm_m, error_m = estimate
-        return min(error_m if self.is_known else arm_m + error_m, _ARM_MAX_M)
+        estimate = self._estimate()
+        return self.reach_m if estimate is None or not self.is_known else min(estimate[1], _ARM_MAX_M)
 
     @property
     def reach_m(self) -> float:
@@ -88,7 +85,7 @@ def learn_point(point: VelocityPoint, measurements: Sequence[Measurement]) -> Ve
     motion, window = take_told(point.motion, measurements)
     if motion is not point.motion:
         point = replace(point, motion=motion)
-    if window is None or min(map(_speed_m_s, (window.velocities[0], window.velocities[-1]))) < _SPEED_MIN_M_S:
+    if window is None or min(map(_speed_m_s, (window.velocities[0], window.velocities[-1]))) < COURSE_SPEED_MIN_M_S:
         return point
     return _with_window(point, window)
 
@@ -102,7 +99,7 @@ def velocities_of_antenna(point: VelocityPoint, measurements: Sequence[Measureme
 
 def _of_antenna(point: VelocityPoint, velocity: Measurement) -> Measurement:
     lately = [one for one in point.motion.velocities if -_TURN_OVER_NS <= one.t_ns - velocity.t_ns <= 0]
-    if len(lately) < 2 or min(map(_speed_m_s, (lately[0], lately[-1]))) < _SPEED_MIN_M_S:
+    if len(lately) < 2 or min(map(_speed_m_s, (lately[0], lately[-1]))) < COURSE_SPEED_MIN_M_S:
         return velocity
     first, last = lately[0], lately[-1]
     over_s = (last.t_ns - first.t_ns) * 1e-9

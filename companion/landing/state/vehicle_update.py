@@ -114,8 +114,7 @@ def _seen_below(
     if rises_m is None:
         return vehicle, ()
     apart_std_m = 0.0 if _are_frames_one(vehicle, inputs, system) else math.inf
-    told = surface_measurements(seen, rises_m, inputs.t_ns, system.config.touchdown, apart_std_m)
-    return vehicle, tuple(told)
+    return vehicle, surface_measurements(seen, rises_m, inputs.t_ns, system.config.touchdown, apart_std_m)
 
 
 def _refused_age_s(stamps: FixStamps, newest_fix_ns: int | None, inputs: StepInputs, system: System) -> float | None:
