@@ -2,10 +2,8 @@
 
 import os
 
+from companion.eyes.sources import PIXELS_MAX
 from link.program.start import start
-
-PIXELS_MAX = 1 << 26
-"""Of a picture that comes as a file, as many as a raw one may have: OpenCV itself makes a gigabyte of one of 1 MB."""
 
 
 def main() -> None:

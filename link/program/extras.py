@@ -16,7 +16,7 @@ EXTRAS: Final = {
     "view": ("viser", "websockets"),
     "foxglove": ("foxglove",),
     "dask": ("distributed",),
-    "camera": ("cv2", "fpdf"),
+    "camera": ("cv2", "fpdf", "simplejpeg"),
 }
 """Extra: the modules that it brings. filterpy is no part of the base since it brings matplotlib along."""
 

@@ -2,11 +2,10 @@
 
 from pathlib import Path
 
-import cv2
-import numpy as np
-
-from companion.eyes.sources.frames import Captured
+from companion.eyes.sources.frames import Captured, gray_of_file
 from link.errors import UserError
+from link.messages import CompressedPicture
+from link.payloads.checks import PayloadError
 from link.units import NS_PER_S
 
 _SUFFIXES = {".png", ".jpg", ".jpeg", ".bmp", ".tif", ".tiff", ".pgm"}
@@ -46,10 +45,12 @@ class FolderSource:
         while self._next < len(self._files):
             path, index = self._files[self._next], self._next
             self._next += 1
-            shades = cv2.imread(str(path), cv2.IMREAD_GRAYSCALE)
-            if shades is not None:
-                return Captured(t_ns=self._time_of(path, index), shades=np.asarray(shades, np.uint8))
-            self.refused_why = f"{path.name} cannot be read as one"
+            t_ns = self._time_of(path, index)
+            try:
+                picture = CompressedPicture(t_ns=t_ns, format=path.suffix[1:], data=path.read_bytes())
+                return Captured(t_ns=t_ns, shades=gray_of_file(picture))
+            except (OSError, PayloadError) as error:
+                self.refused_why = f"{path.name}: {error}"
         return None
 
     def _time_of(self, path: Path, index: int) -> int:

@@ -5,8 +5,10 @@ from typing import Protocol
 
 import cv2
 import numpy as np
+import simplejpeg
 
 from companion.eyes.picture import Gray
+from companion.eyes.sources import PIXELS_MAX
 from link.messages import CameraImage, CompressedPicture
 from link.payloads.checks import PayloadError
 
@@ -16,6 +18,7 @@ _GRAY_OF = {
     "bgra8": cv2.COLOR_BGRA2GRAY,
     "rgba8": cv2.COLOR_RGBA2GRAY,
 }
+_JPEG = b"\xff\xd8\xff"  # begins with it; one that was cut short does not end as one does
 _CHANNELS = {"mono8": 1, "8UC1": 1, "bgr8": 3, "rgb8": 3, "bgra8": 4, "rgba8": 4}
 
 
@@ -75,15 +78,36 @@ def gray_of_image(image: CameraImage) -> Gray:
 
 
 def gray_of_file(picture: CompressedPicture) -> Gray:
-    """Return the shades of a compressed picture.
+    """Return the shades of a compressed picture as the camera's pixels lie, whatever way up it says to be shown.
 
     Raises:
-        PayloadError: it cannot be read.
+        PayloadError: it cannot be read, or is a JPEG of which a part was lost.
     """
+    if picture.data.startswith(_JPEG):
+        return _gray_of_jpeg(picture.data)
     try:
-        found = cv2.imdecode(np.frombuffer(picture.data, np.uint8), cv2.IMREAD_GRAYSCALE)
+        found = cv2.imdecode(
+            np.frombuffer(picture.data, np.uint8), cv2.IMREAD_GRAYSCALE | cv2.IMREAD_IGNORE_ORIENTATION
+        )
     except cv2.error as error:  # of an empty one, or of one that says to be enormous
         raise PayloadError(f"no picture: {str(error).splitlines()[0]}") from None
     if found is None:
         raise PayloadError(f"{len(picture.data)} bytes are no picture of format {picture.format!r}")
     return np.asarray(found, np.uint8)
+
+
+def _gray_of_jpeg(data: bytes) -> Gray:
+    """Return its shades.
+
+    What comes behind a lost part is decoded, too, but belongs elsewhere in the picture: OpenCV shows it where the lost
+    part was, with the pad metres away from where it is.
+    """
+    try:
+        height_px, width_px, *_ = simplejpeg.decode_jpeg_header(data)
+        is_enormous = height_px * width_px > PIXELS_MAX
+        shades = None if is_enormous else simplejpeg.decode_jpeg(data, colorspace="GRAY", strict=True)
+    except ValueError as error:
+        raise PayloadError(f"a damaged JPEG: {error}") from None
+    if shades is None:
+        raise PayloadError(f"a JPEG of {width_px} x {height_px} pixels; at most {PIXELS_MAX} are read")
+    return np.asarray(shades[:, :, 0], np.uint8)

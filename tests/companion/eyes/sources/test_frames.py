@@ -85,7 +85,7 @@ def test_a_folder_gives_its_pictures_in_order_with_the_times_of_their_names(tmp_
         times.append(captured.t_ns)
         assert (captured.shades == SHADES).all()
     assert times == [1_763_708_400_000_000_000, 1_763_708_400_033_000_000]
-    assert source.refused_why == "1763708400010000000.png cannot be read as one"
+    assert source.refused_why == "1763708400010000000.png: 10 bytes are no picture of format 'png'"
     assert source.has_ended()
 
 
