@@ -121,6 +121,7 @@ def _situation(memory: StepMemory, pad: PadPath | None, inputs: StepInputs, syst
         vehicle=VehicleNews(
             fix_age_s=None if newest_ns is None else (inputs.t_ns - newest_ns) * 1e-9,
             fix_age_on_arrival_s=vehicle.fix_stamps.age_on_arrival_s,
+            fixes_apart_s=vehicle.fix_stamps.apart_s,
             stamps_stepped_s=vehicle.fix_stamps.stepped_s,
             is_alive=inputs.vehicle.is_alive,
             speed_std_m_s=vehicle.hindsight.speed_std_m_s,

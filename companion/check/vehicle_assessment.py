@@ -36,7 +36,8 @@ def assess_vehicle(seen: VehicleFacts, config: CompanionConfig, *, is_expected: 
         level = Level.FAIL if is_expected else Level.WARN
         return [make_finding("vehicle", f"nothing on {seen.key}", level, advice)]
     least_hz = _FIX_RATE_MIN_HZ if seen.has_velocity else _FIX_RATE_ALONE_MIN_HZ
-    level = pass_or(seen.rate_hz >= least_hz, Level.WARN)
+    is_rare = 1.0 / seen.rate_hz + max(seen.age_s or 0.0, 0.0) > config.abort.fix_age_max_s
+    level = pass_or(seen.rate_hz >= least_hz, Level.FAIL if is_rare else Level.WARN)
     advice = "set its receiver to 5 Hz or more" + ("" if seen.has_velocity else "; to 10 Hz while it tells no velocity")
     rate = make_finding("vehicle fixes", f"{seen.rate_hz:.1f} Hz", level, advice)
     known = [_age(seen, config), _accuracy(seen, config.abort.position_std_max_m)]

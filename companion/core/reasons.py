@@ -148,6 +148,10 @@ class Reason(Enum):
         "vehicle's fixes come {:.2f} s after their stamps, abort.fix_age_max_s is {:g}: set its clock by GNSS or NTP, "
         "or use a faster link"
     )
+    FIXES_RARE = (
+        "vehicle's fixes come {:.2f} s apart and {:.2f} s after their stamps, abort.fix_age_max_s is {:g}: set its "
+        "receiver to 5 Hz or more, or use a better link"
+    )
     STAMPS_AHEAD = (
         "vehicle's fixes come {:.2f} s before their stamps: set its clock by GNSS or NTP, or the autopilot's; "
         "or the autopilot's link is too slow"

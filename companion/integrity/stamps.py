@@ -1,4 +1,4 @@
-"""Whether the vehicle's fixes come from the future, and whether their stamps have stepped; pure.
+"""Whether the vehicle's fixes come from the future, late or too rarely, and whether their stamps have stepped; pure.
 
 The age of a fix, as it comes, is the link's delay plus the difference of the two clocks. The delay changes from fix to
 fix. When a clock is set, the vehicle's or the one that the autopilot's UTC comes from, all later fixes are older, or
@@ -7,6 +7,7 @@ before, or all are younger. The pad is then believed elsewhere on the vehicle's 
 times was right. A link that became slower makes fixes older, too, but puts none of them elsewhere on that way.
 """
 
+from itertools import pairwise
 from typing import NamedTuple
 
 from msgspec import Struct
@@ -25,7 +26,7 @@ _KNOWN_NS = 60_000_000_000  # after which nobody remembers another clock
 _RECENT_MIN, _EARLIER_MIN = 4, 10  # fixes
 _REFINED_S = 0.05  # by which the map to UTC may be refined at once
 
-_OF_STAMPS = frozenset({Reason.STAMPS_AHEAD, Reason.STAMPS_LATE})
+_OF_STAMPS = frozenset({Reason.STAMPS_AHEAD, Reason.STAMPS_LATE, Reason.FIXES_RARE})
 _OF_CLOCK = 0.5  # share of a step of the ages by which the places step along the way as well, or the link is slower
 
 
@@ -66,6 +67,12 @@ class FixStamps(Struct, frozen=True, kw_only=True):
     recent: Ages = ()
     stepped_s: float = 0.0
     stepped_ns: int = 0
+
+    @property
+    def apart_s(self) -> float | None:
+        """How far the newest fixes are apart by their stamps: the less of two times, for one may have been lost."""
+        taken_s = [one.at_ns * 1e-9 - one.age_s for one in (self.recent or self.ages)[-3:]]
+        return min((after - before for before, after in pairwise(taken_s)), default=None)
 
 
 def update_fix_stamps(
@@ -172,6 +179,36 @@ def is_stamped_ahead(s: Situation, c: CompanionConfig) -> bool:
     """Return whether the newest fix came before it was taken: the vehicle's clock, or ours, is wrong."""
     age_s = s.vehicle.fix_age_on_arrival_s
     return age_s is not None and age_s < -c.integrity.fix_ahead_max_s
+
+
+def tell_stamped_ahead(s: Situation, _: CompanionConfig) -> Cause:
+    """Return by how much that clock is ahead."""
+    return Cause(Reason.STAMPS_AHEAD, (-(s.vehicle.fix_age_on_arrival_s or 0.0),))
+
+
+def are_stamps_late(s: Situation, c: CompanionConfig) -> bool:
+    """Return whether the newest fix was too old to count as it came."""
+    age_s = s.vehicle.fix_age_on_arrival_s
+    return age_s is not None and age_s > c.abort.fix_age_max_s
+
+
+def tell_stamped_late(s: Situation, c: CompanionConfig) -> Cause:
+    """Return how old it was."""
+    return Cause(Reason.STAMPS_LATE, (s.vehicle.fix_age_on_arrival_s or 0.0, c.abort.fix_age_max_s))
+
+
+def are_fixes_rare(s: Situation, c: CompanionConfig) -> bool:
+    """Return whether each fix gets too old to count before the next one comes."""
+    return sum(_pace_s(s)) > c.abort.fix_age_max_s
+
+
+def tell_rare(s: Situation, c: CompanionConfig) -> Cause:
+    """Return how far the fixes are apart, and how old as they come."""
+    return Cause(Reason.FIXES_RARE, (*_pace_s(s), c.abort.fix_age_max_s))
+
+
+def _pace_s(s: Situation) -> tuple[float, float]:
+    return s.vehicle.fixes_apart_s or 0.0, max(s.vehicle.fix_age_on_arrival_s or 0.0, 0.0)
 
 
 def have_stamps_stepped(s: Situation, c: CompanionConfig) -> bool:

@@ -57,6 +57,7 @@ class VehicleNews(Struct, frozen=True, kw_only=True):
     Attributes:
         fix_age_s: since the newest accepted fix was taken.
         fix_age_on_arrival_s: of the newest accepted fix when it was taken in.
+        fixes_apart_s: by their stamps, of the newest ones; None of a single one.
         stamps_stepped_s: by how much its fixes come later after their stamps than before a clock was set; 0 without.
         fix_std_m: that the newest fix states horizontally.
         is_alive: its liveliness token is there; None when it never showed one.
@@ -74,6 +75,7 @@ class VehicleNews(Struct, frozen=True, kw_only=True):
 
     fix_age_s: float | None = None
     fix_age_on_arrival_s: float | None = None
+    fixes_apart_s: float | None = None
     stamps_stepped_s: float = 0.0
     fix_std_m: float | None = None
     is_alive: bool | None = None

@@ -10,7 +10,15 @@ from companion.config.companion import CompanionConfig
 from companion.core.reasons import Cause, Reason
 from companion.integrity.contradictions import contradicts_itself, tell_rejected
 from companion.integrity.heights import road_above_ground_m, road_distance_m
-from companion.integrity.stamps import have_stamps_stepped, is_stamped_ahead
+from companion.integrity.stamps import (
+    are_fixes_rare,
+    are_stamps_late,
+    have_stamps_stepped,
+    is_stamped_ahead,
+    tell_rare,
+    tell_stamped_ahead,
+    tell_stamped_late,
+)
 from companion.landing.decisions.conditions import (
     AUTOPILOT_SILENT,
     Condition,
@@ -113,27 +121,6 @@ def _lacks_geoid(s: Situation, _: CompanionConfig) -> bool:
     return s.autopilot.frame is not None and not s.autopilot.receiver.knows_geoid
 
 
-def _tell_stamped_ahead(s: Situation, _: CompanionConfig) -> Cause:
-    return Cause(Reason.STAMPS_AHEAD, (-(s.vehicle.fix_age_on_arrival_s or 0.0),))
-
-
-def _are_stamps_late(s: Situation, c: CompanionConfig) -> bool:
-    age_s = s.vehicle.fix_age_on_arrival_s
-    return age_s is not None and age_s > c.abort.fix_age_max_s
-
-
-def _tell_stamped_late(s: Situation, c: CompanionConfig) -> Cause:
-    return Cause(Reason.STAMPS_LATE, (s.vehicle.fix_age_on_arrival_s or 0.0, c.abort.fix_age_max_s))
-
-
-def _is_id_shared(s: Situation, _: CompanionConfig) -> bool:
-    return s.autopilot.is_id_shared
-
-
-def _is_warned(s: Situation, _: CompanionConfig) -> bool:
-    return s.autopilot.warns
-
-
 def _is_elsewhere(s: Situation, c: CompanionConfig) -> bool:
     return not is_fix_old(s, c) and s.vehicle.is_road_elsewhere
 
@@ -178,21 +165,28 @@ def _high(s: Situation, c: CompanionConfig) -> Cause:
 # An estimate that has just begun jumps: what is said of the vehicle must hold for a while.
 OBSTACLES = (
     Condition(reason=Reason.DRONE_TAKEN, phases=_BEFORE_ANY_CHASE, is_true=is_drone_taken),
-    Condition(reason=Reason.SYSTEM_ID_SHARED, phases=_BEFORE_AN_ARMING, is_true=_is_id_shared),
+    Condition(reason=Reason.SYSTEM_ID_SHARED, phases=_BEFORE_AN_ARMING, is_true=lambda s, _: s.autopilot.is_id_shared),
     Condition(reason=Reason.VEHICLE_TAKEN, phases=_BEFORE_ANY_CHASE, is_true=is_vehicle_taken, cause=tell_taken),
     Condition(
         reason=Reason.STAMPS_AHEAD,
         phases=_BEFORE_ANY_CHASE,
         is_true=is_stamped_ahead,
         hold_s=lambda _, c: c.integrity.fix_ahead_hold_s,
-        cause=_tell_stamped_ahead,
+        cause=tell_stamped_ahead,
     ),
     Condition(
         reason=Reason.STAMPS_LATE,
         phases=_BEFORE_A_CHASE,
-        is_true=_are_stamps_late,
+        is_true=are_stamps_late,
         hold_s=lambda _, c: c.chase.driving_hold_s,
-        cause=_tell_stamped_late,
+        cause=tell_stamped_late,
+    ),
+    Condition(
+        reason=Reason.FIXES_RARE,
+        phases=_BEFORE_A_CHASE,
+        is_true=are_fixes_rare,
+        hold_s=lambda _, c: c.chase.driving_hold_s,
+        cause=tell_rare,
     ),
     Condition(reason=Reason.STAMPS_STEPPED, phases=_BEFORE_A_RETRY, is_true=have_stamps_stepped),
     Condition(
@@ -215,7 +209,7 @@ OBSTACLES = (
         is_true=_lacks_geoid,
         hold_s=lambda _, __: _RECEIVER_TOLD_S,
     ),
-    Condition(reason=Reason.AUTOPILOT_WARNS, phases=_BEFORE_A_CHASE, is_true=_is_warned),
+    Condition(reason=Reason.AUTOPILOT_WARNS, phases=_BEFORE_A_CHASE, is_true=lambda s, _: s.autopilot.warns),
     Condition(
         reason=Reason.MEASUREMENTS_REJECTED,
         phases=_BEFORE_ANY_CHASE,

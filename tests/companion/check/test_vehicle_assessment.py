@@ -31,7 +31,8 @@ def by_name(seen: VehicleFacts) -> dict[str, Finding]:
     [
         ({"rate_hz": 0.0}, "vehicle", Level.WARN),
         ({"rate_hz": 0.0, "fix_refused_why": "the receiver has no fix"}, "vehicle", Level.FAIL),
-        ({"rate_hz": 1.0}, "vehicle fixes", Level.WARN),
+        ({"rate_hz": 1.0}, "vehicle fixes", Level.FAIL),
+        ({"rate_hz": 2.0}, "vehicle fixes", Level.WARN),
         ({"rate_hz": 5.0, "has_velocity": False}, "vehicle fixes", Level.WARN),
         ({"age_s": 2.0}, "vehicle age", Level.FAIL),
         ({"age_s": -3600.0}, "vehicle age", Level.FAIL),
