@@ -21,7 +21,10 @@ class LaunchConfig(StrictModel):
     # From the pad's middle, on each axis: as a landing puts it there (docs/worlds.md), or a hand on a marked pad.
     placed_std_m: Positive = 0.1
     quiet_hold_s: NotNegative = 0.5  # half a period of a car's body on its springs, 1 Hz
-    time_limit_s: Positive = 60.0  # without a quiet moment: the motors are switched off
+    # So long the motors idle on the deck; without a quiet moment they are stopped until the next one. PX4 and ArduPilot
+    # stop them after 10 s by themselves, and their heartbeats tell up to a second late that they turn.
+    idle_max_s: Positive = 7.0
+    time_limit_s: Positive = 60.0  # without a quiet moment the launch is called off
     # Of the feet above the pad, where the station's flight begins. A drone may seem to be 0.5 m above the deck on which
     # it stands, and be taken for risen from there.
     clear_height_m: Annotated[float, Field(ge=1.0, le=120.0)] = 3.0

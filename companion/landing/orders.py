@@ -8,7 +8,7 @@ from companion.landing.decisions.conditions import HELD_UP, holds, is_low_above_
 from companion.landing.decisions.contact import may_force_motors_off
 from companion.landing.decisions.contact_signs import signs_of
 from companion.landing.decisions.taken_control import is_held_on_ground
-from companion.landing.sortie.events import is_quiet_for_long
+from companion.landing.sortie.over_vehicle import shall_motors_turn
 from companion.landing.state.memory import StepMemory
 from companion.landing.state.step_data import StepInputs
 from companion.situation.phases import Phase
@@ -67,8 +67,7 @@ def _desire(memory: StepMemory, situation: Situation, config: CompanionConfig) -
         case Phase.TAKEOFF:
             return Desire(control=True, armed=True, takeoff_height_m=config.takeoff.waiting_height_m)
         case Phase.ON_DECK:
-            is_quiet = is_quiet_for_long(memory.sortie, situation, config)
-            return Desire(control=True, armed=True if is_quiet else None)
+            return Desire(control=True, armed=shall_motors_turn(memory.sortie, situation, config.sortie.launch))
         case Phase.LIFT_OFF:
             return Desire(takeoff_height_m=config.sortie.launch.clear_height_m, leaves_deck=True)
         case Phase.TOUCHDOWN:

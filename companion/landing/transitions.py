@@ -119,7 +119,8 @@ def _update_control(memory: StepMemory, inputs: StepInputs) -> StepMemory:
     control, view = memory.control, inputs.autopilot
     flies = memory.progress.phase in FLYING_PHASES
     in_control = flies and (control.was_in_control or view.in_control)
-    armed = in_control and (control.was_armed or (view.in_control and view.armed))
+    was_stopped = memory.progress.phase is Phase.ON_DECK and control.driver.disarm_asked and not view.armed
+    armed = in_control and not was_stopped and (control.was_armed or (view.in_control and view.armed))
     flown = flies and (control.has_flown or (view.armed and view.landed is False))
     if (in_control, armed, flown) == (control.was_in_control, control.was_armed, control.has_flown):
         return memory

@@ -125,6 +125,7 @@ class SortieMemory(Struct, frozen=True, kw_only=True, eq=False):
         place_enu_m: (3,) where a silent vehicle is looked for; None while it is heard.
         found_since_ns: since when a vehicle that was silent is heard again, monotonic; None while it is not.
         quiet_since_ns: since when the deck is quiet, monotonic; None while it is not.
+        idles_since_ns: since when the motors turn on the deck, monotonic; None while they do not.
         battery: over the flight.
         warning: what the pilot is told of the way home, None while there is time.
     """
@@ -139,6 +140,7 @@ class SortieMemory(Struct, frozen=True, kw_only=True, eq=False):
     place_enu_m: Array | None = None
     found_since_ns: int | None = None
     quiet_since_ns: int | None = None
+    idles_since_ns: int | None = None
     battery: BatteryWatch = UNTOLD
     warning: Cause | None = None
 

@@ -29,12 +29,14 @@ def _why_taken(phase: Phase, control: ControlMemory, s: Situation) -> Reason | N
     if s.autopilot.failsafe or s.autopilot.overruled:
         return Reason.AUTOPILOT_FAILSAFE
     is_off_told = s.autopilot.disarm_told or not s.autopilot.armed
-    is_off_wanted = phase is Phase.TOUCHDOWN or (is_held_on_ground(phase, control, s) and control.driver.disarm_asked)
+    may_stop = phase is Phase.ON_DECK or is_held_on_ground(phase, control, s)
+    is_off_wanted = phase is Phase.TOUCHDOWN or (may_stop and control.driver.disarm_asked)
     if is_off_wanted and is_off_told:
         return None  # a mode that changes with it is not the pilot's
     if not s.autopilot.in_control:
         return _why_not_in_control(control, s, is_off_told=is_off_told)
-    # On a deck, too: a person did it, or the autopilot's time was over, and nobody expects the motors to start again.
+    # On a deck, too, unless the companion asked: a person did it, or the autopilot's time was over, and nobody expects
+    # the motors to start again.
     is_undone = was_arming_undone(control.driver, s.autopilot, s.monotonic_ns)
     return Reason.DISARMED if is_undone or (control.was_armed and not s.autopilot.armed) else None
 

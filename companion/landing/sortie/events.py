@@ -17,7 +17,7 @@ from companion.landing.decisions.conditions import (
 from companion.landing.decisions.entries import Decision
 from companion.landing.decisions.events import TOO_LONG, arming_refused
 from companion.landing.decisions.feasibility import EMPTY
-from companion.landing.sortie.over_vehicle import is_deck_quiet
+from companion.landing.sortie.over_vehicle import is_deck_quiet, shall_motors_turn
 from companion.landing.sortie.riding import CARRIED_OFF, call_off, has_not_left_deck
 from companion.landing.sortie.way_home import warn_of_way_home, way_home_due
 from companion.landing.state.memory import ControlMemory, Progress
@@ -88,7 +88,8 @@ def update_sortie(sortie: SortieMemory, phase: Phase, s: Situation, config: Comp
     ahead = sortie.ahead_rad
     if s.pad is not None:
         ahead = ahead_rad(StationFrame.VEHICLE if sortie.station is None else sortie.station.frame, s.pad, ahead)
-    is_quiet = phase is Phase.ON_DECK and is_deck_quiet(s, config.sortie.launch)
+    is_on_deck = phase is Phase.ON_DECK
+    is_quiet = is_on_deck and is_deck_quiet(s, config.sortie.launch)
     is_found = phase is Phase.RALLY and _is_found(s, config)
     sortie = replace(
         sortie,
@@ -96,6 +97,7 @@ def update_sortie(sortie: SortieMemory, phase: Phase, s: Situation, config: Comp
         battery=battery,
         was_due=sortie.was_due or way_home_due(sortie, s, config) is not None,
         quiet_since_ns=_since(sortie.quiet_since_ns, s.monotonic_ns, holds_now=is_quiet),
+        idles_since_ns=_since(sortie.idles_since_ns, s.monotonic_ns, holds_now=is_on_deck and s.autopilot.armed),
         found_since_ns=_since(sortie.found_since_ns, s.monotonic_ns, holds_now=is_found),
     )
     return replace(sortie, warning=warn_of_way_home(sortie, phase, s, config))
@@ -164,14 +166,8 @@ def _leave_deck(
     if in_phase_s > launch.time_limit_s:
         refused = None if sortie.quiet_since_ns is None else arming_refused(progress, control, s)
         return refused or (Event.TIME_LIMIT, Cause(Reason.DECK_RESTLESS, (launch.time_limit_s,)))
-    is_ready = view.armed and view.in_control and is_quiet_for_long(sortie, s, config)
+    is_ready = view.armed and view.in_control and shall_motors_turn(sortie, s, launch) is True
     return (Event.DECK_QUIET, Cause(Reason.DECK_QUIET)) if is_ready else None
-
-
-def is_quiet_for_long(sortie: SortieMemory, s: Situation, config: CompanionConfig) -> bool:
-    """Return whether the deck has been quiet for as long as a lift-off waits for."""
-    since_ns = sortie.quiet_since_ns
-    return since_ns is not None and (s.monotonic_ns - since_ns) * 1e-9 >= config.sortie.launch.quiet_hold_s
 
 
 def _rise(progress: Progress, s: Situation, config: CompanionConfig) -> Decision | None:

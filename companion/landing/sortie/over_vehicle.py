@@ -9,6 +9,7 @@ from companion.config.sortie import LaunchConfig
 from companion.core.data import Array, FlightLimits
 from companion.planning.guidance import ReferenceState, Target
 from companion.situation.situation import Situation
+from companion.sortie.memory import SortieMemory
 from companion.sortie.station import KeepOut, closing_speed_m_s, turn_rates_rad_s, turned
 from companion.vehicle.pad import PadPath
 from companion.vehicle.pad_reach import placed_std_m
@@ -137,6 +138,20 @@ def is_deck_quiet(s: Situation, config: LaunchConfig) -> bool:
     changes_m_s2 = math.hypot(*s.pad.acceleration_enu_m_s2[0, :2].tolist())
     is_level = s.drone.lean <= math.sin(config.quiet_tilt_max_rad)
     return is_level and climb_m_s <= config.quiet_climb_max_m_s and changes_m_s2 <= config.quiet_acceleration_max_m_s2
+
+
+def shall_motors_turn(sortie: SortieMemory, s: Situation, config: LaunchConfig) -> bool | None:
+    """Return whether a quiet deck is to be left, or motors that have idled on it for long to stop; None for neither.
+
+    An autopilot that stops them by itself ends the launch, since a person may have done so as well.
+    """
+    if _lasts(sortie.idles_since_ns, s, config.idle_max_s):
+        return False
+    return True if _lasts(sortie.quiet_since_ns, s, config.quiet_hold_s) else None
+
+
+def _lasts(since_ns: int | None, s: Situation, least_s: float) -> bool:
+    return since_ns is not None and (s.monotonic_ns - since_ns) * 1e-9 >= least_s
 
 
 def _road_climb_m_s(pad: PadPath) -> float:

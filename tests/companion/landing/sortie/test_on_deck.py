@@ -125,6 +125,33 @@ def test_drone_that_was_disarmed_on_the_deck_starts_its_motors_by_a_new_order_on
     assert flight.history[-2:] == [Phase.ON_DECK, Phase.PILOT]
 
 
+def test_motors_that_idle_on_a_restless_deck_are_stopped_and_start_again_at_its_next_quiet_moment() -> None:
+    flight = on_deck()
+    flight.refuses_plain_disarm = False
+    flight.step(Command.LAUNCH)
+    while not flight.view.armed:
+        flight.step()
+    idle_max_s = CONFIG.sortie.launch.idle_max_s
+    wait(flight, idle_max_s - 0.1, tilt_rad=0.2)
+    assert flight.view.armed
+    wait(flight, 5.0, tilt_rad=0.2)
+    assert (flight.view.armed, flight.phase) == (False, Phase.ON_DECK)
+    flight.own = replace(flight.own, orientation_wxyz=(1.0, 0.0, 0.0, 0.0))
+    flight.run_until(Phase.LIFT_OFF, limit_s=3.0)
+    assert flight.view.armed
+
+
+def test_no_lift_off_begins_while_the_motors_are_being_stopped() -> None:
+    flight = on_deck()
+    flight.refuses_plain_disarm = True  # they turn on
+    flight.step(Command.LAUNCH)
+    while not flight.view.armed:
+        flight.step()
+    wait(flight, CONFIG.sortie.launch.idle_max_s + 0.1, tilt_rad=0.2)
+    wait(flight, 3.0)
+    assert (flight.view.armed, flight.phase) == (True, Phase.ON_DECK)
+
+
 SOON_GIVEN_UP = configured({"sortie": {"launch": {"time_limit_s": 8.0}}})
 LAUNCH = SOON_GIVEN_UP.sortie.launch
 
