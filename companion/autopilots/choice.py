@@ -23,6 +23,13 @@ MULTIROTORS = frozenset(
 """MAV_TYPE of what can be flown."""
 
 
+WHY_REFUSED = (
+    "not signed with this --signing-key, or the autopilot's time is more than a minute behind or has gone back; "
+    "give both the same key and the right time"
+)
+"""What MAVLink messages are not taken for where a key is given, and what to change."""
+
+
 def driver_for(autopilot_id: int, vehicle_type: int, kind: AutopilotKind = AutopilotKind.AUTO) -> Driver:
     """Return the driver for a heartbeat's MAV_AUTOPILOT.
 
@@ -62,10 +69,7 @@ def _describe_heard(session: MavlinkSession) -> str:
         others = ", ".join(map(str, sorted(session.other_system_ids)))
         causes.append(f"autopilots of system {others} were heard, see --system-id")
     if codec.refused_messages:
-        causes.append(
-            f"{codec.refused_messages} messages were refused: not signed with this --signing-key, or the autopilot's "
-            "time is more than a minute behind; give both the same key and the right time"
-        )
+        causes.append(f"{codec.refused_messages} messages were refused: {WHY_REFUSED}")
     if causes:
         return "; ".join(causes)
     if codec.bytes_received and not codec.messages_received:

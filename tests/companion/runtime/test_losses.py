@@ -9,15 +9,20 @@ import pytest
 
 from companion.core.data import Setpoint
 from companion.runtime import publishing
+from companion.runtime.build import build_node
 from companion.runtime.losses import Losses
 from companion.runtime.sent_frames import SentFrames
+from link.mavlink.codec import MavlinkCodec
+from link.mavlink.signing import Signing, signing_timestamp
 from link.payloads.checks import PayloadError
 from link.recording.log import Log
 from link.transports.opening import open_transport
 from link.zenoh.options import ZenohOptions
 from link.zenoh.session import open_session
-from tests.companion.peer import Setup
+from tests.companion.peer import KEYS, Setup
+from tests.link.mavlink.fake_autopilot import START_NS
 
+KEY, OTHER_KEY = bytes(range(32)), bytes(32)
 NOT_FINITE = Setpoint(
     t_ns=0, position_enu_m=(math.nan, 0.0, 1.0), velocity_enu_m_s=None, acceleration_enu_m_s2=None, yaw_rad=0.0
 )
@@ -58,3 +63,25 @@ def test_status_that_no_message_holds_is_told_once_in_the_log(monkeypatch: pytes
         setup.run(1.0)
 
     assert said(setup, lose).count("statuses are not published") == 1
+
+
+def signed(key: bytes) -> MavlinkCodec:
+    return MavlinkCodec(1, 1, signing=Signing(key, timestamp=signing_timestamp(START_NS)))
+
+
+def test_autopilot_that_is_not_heard_any_more_for_its_signatures_is_told_once() -> None:
+    setup = Setup()
+    setup.node = build_node(setup.config, KEYS, signing=Signing(KEY))
+    setup.autopilot.codec = signed(KEY)
+
+    def lose() -> None:
+        setup.autopilot.codec = signed(OTHER_KEY)
+        setup.run(4.0)
+
+    assert said(setup, lose).count("messages of MAVLink are refused") == 1
+
+
+def test_autopilot_that_was_never_heard_for_its_signatures_is_told() -> None:
+    setup = Setup()
+    setup.node = build_node(setup.config, KEYS, signing=Signing(KEY))
+    assert said(setup, lambda: setup.run(1.0)).count("messages of MAVLink are refused") == 1
