@@ -18,6 +18,9 @@ Share = Annotated[float, Field(ge=0.0, le=1.0)]
 Angle = Annotated[float, Field(ge=-math.pi, le=math.pi)]
 """Mathematical, in rad; degrees are refused."""
 
+_Rate = Annotated[float, Field(ge=0.01, le=1000.0)]
+"""In Hz; what comes more seldom than every 100 s is not there in a landing."""
+
 FirmwareName = Literal["px4", "ardupilot"]
 FIRMWARES: tuple[FirmwareName, ...] = get_args(FirmwareName)
 
@@ -25,7 +28,7 @@ FIRMWARES: tuple[FirmwareName, ...] = get_args(FirmwareName)
 class DelayConfig(StrictModel):
     """How late and how often samples arrive; a jitter beyond the period puts them out of order."""
 
-    rate_hz: Annotated[float, Field(gt=0.0, le=1000.0)]
+    rate_hz: _Rate
     delay_s: NotNegative = 0.0
     jitter_s: NotNegative = 0.0  # evenly, to either side of the delay
     loss: Share = 0.0
@@ -79,7 +82,7 @@ class CameraConfig(DelayConfig):
     or the tracking on a small computer.
     """
 
-    rate_hz: Annotated[float, Field(gt=0.0, le=1000.0)] = 30.0
+    rate_hz: _Rate = 30.0
     delay_s: NotNegative = 0.06
     daylight_lx: Annotated[float, Field(ge=0.0, le=150_000.0)] = 0.0  # on level ground
     lamp_lm: Annotated[float, Field(ge=0.0, le=50_000.0)] = 0.0  # beside the camera, in a cone of 90 degrees

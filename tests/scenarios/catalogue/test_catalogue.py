@@ -200,6 +200,7 @@ def test_file_with_a_base_changes_what_it_names(tmp_path: Path) -> None:
             'base = "straight_5"\n[sensors.range_finder]\nmin_m = 5.0\nmax_m = 2.0\n',
             ["sensors.range_finder", "min_m must be less than max_m, 2"],
         ),
+        ('base = "straight_5"\n[sensors.fix]\nrate_hz = 1e-300\n', ["sensors.fix.rate_hz", "at least 0.01"]),
         ('base = "straight"\n', ["'straight'", "'straight_"]),
         ('description = "no track"\n', ["track"]),
         ("speed = = 3\n", ["not valid TOML"]),
