@@ -4,7 +4,7 @@ MAV_CMD_USER_1 starts a landing, USER_2 holds it, USER_3 aborts it; USER_4 launc
 to it. A start is acknowledged as in progress with its percentage, once a second and with each phase, until it has
 ended. Each command has to name the component: what a ground station sends to all components does none of this.
 What begins a flight is obeyed once: a network that delivers it again, after a hold or when the pilot has taken over,
-must not begin another. It is told by its bytes, its number included; holds and aborts are always obeyed.
+must not begin another. It is told by its bytes, its number included; holds and aborts are always obeyed, and first.
 Source: MAVLink command protocol, https://mavlink.io/en/services/command.html.
 """
 
@@ -95,9 +95,13 @@ class StationCommands:
             return []
         return self._wait(_Asked(message.get_srcSystem(), message.get_srcComponent(), None))
 
-    def next(self) -> Command | None:
-        """Return the command for the step that is made now, None when nobody waits for one."""
-        if not self._waiting:
+    def next(self, *, only_ends: bool = False) -> Command | None:
+        """Return the command for the step that is made now, None when nobody waits for one.
+
+        Args:
+            only_ends: nothing but what ends a landing or a sortie.
+        """
+        if not self._waiting or (only_ends and self._waiting[0].number not in _ENDS):
             return None
         self._asked = self._waiting.popleft()
         return Command.ABORT if self._asked.number is None else COMMANDS[self._asked.number]
@@ -146,13 +150,17 @@ class StationCommands:
         self._answered = lately | {asked: (result, local_ns)}
 
     def _wait(self, asked: _Asked) -> list[Message]:
-        """Let a command wait for a step; what is given twice waits once."""
+        """Let a command wait for a step; what is given twice waits once. What ends a flight goes first, and finds room.
+
+        Else whoever floods the companion with starts would keep an abort from being heard.
+        """
         if asked in self._waiting:
             return []
-        if len(self._waiting) >= _WAITING_MAX:
-            return [asked.acknowledge(mavlink.MAV_RESULT_TEMPORARILY_REJECTED)]
-        self._waiting.append(asked)
-        return []
+        ends = asked.number in _ENDS
+        waiting = list(self._waiting)
+        waiting.insert(sum(one.number in _ENDS for one in waiting) if ends else len(waiting), asked)
+        self._waiting = deque(waiting[:_WAITING_MAX])
+        return [one.acknowledge(mavlink.MAV_RESULT_TEMPORARILY_REJECTED) for one in waiting[_WAITING_MAX:]]
 
 
 def _result(phase: Phase, status: LandingStatus) -> int:

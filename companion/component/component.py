@@ -168,9 +168,9 @@ class MavlinkComponent:
         if tells_of_flight(heartbeat):
             self._other_flies_ns = local_ns
 
-    def next_command(self) -> Command | None:
-        """Return what the step that is made now is commanded; None when nobody waits for one."""
-        return self._commands.next()
+    def next_command(self, *, only_ends: bool = False) -> Command | None:
+        """Return what the step that is made now is commanded, or only what ends a flight; None when nobody waits."""
+        return self._commands.next(only_ends=only_ends)
 
     def answer(self, reply: CommandReply, local_ns: int) -> None:
         """Take the step's reply to the command of `next_command`."""

@@ -1,4 +1,7 @@
-"""What a step is commanded, and who hears the reply: the pilot's switch before operators, these before stations."""
+"""What a step is commanded, and who hears the reply: the pilot's switch before operators, these before stations.
+
+A station's hold or abort goes before what an operator begins: operators who ask in every step would keep it waiting.
+"""
 
 from collections.abc import Callable
 from enum import Enum, auto
@@ -50,18 +53,25 @@ class StepCommands:
         """
         if switched in _ENDS:
             self._refuse_beginnings()
-        if switched is None and self._requested is not None:
+        sender, wanted = _Sender.SWITCH, switched
+        if switched is None:
+            sender, wanted = _Sender.STATION, self._of_station()
+        if wanted is None and self._requested is not None:
             (command, station), self._requested = self._requested, None
             self._sent = _Sender.OPERATOR, command
             return command, station
-        sender = _Sender.STATION if switched is None else _Sender.SWITCH
-        wanted = switched or self._component.next_command()
         self._sent = None if wanted is None else (sender, wanted)
         refusal = start_refusal() if wanted is Command.START else None
         if refusal is None:
             return wanted, None
         self.answer(refusal, local_ns)
         return None, None
+
+    def _of_station(self) -> Command | None:
+        """Return what a ground station has asked for, if it goes before what an operator has."""
+        if self._requested is not None and self._requested[0] in _ENDS:
+            return None
+        return self._component.next_command(only_ends=self._requested is not None)
 
     def _refuse_beginnings(self) -> None:
         """Refuse what waits to begin something, which the next step would do against the pilot."""

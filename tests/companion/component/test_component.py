@@ -5,7 +5,6 @@ from dataclasses import dataclass, field
 
 import pytest
 
-from companion.component.commands import StationCommands
 from companion.config.autopilot import GroundStationConfig, PadOnMap
 from companion.config.companion import CompanionConfig
 from companion.situation.phases import Phase
@@ -63,51 +62,22 @@ def test_start_for_a_vehicle_that_was_never_heard_is_refused() -> None:
     assert station.setup.node.phase is Phase.IDLE
 
 
-def test_what_waits_to_begin_is_refused_and_what_ends_a_landing_still_waits() -> None:
-    commands, station = StationCommands(), MavlinkCodec(255, 190)
-    for number in (START, ABORT, HOLD, mavlink.MAV_CMD_USER_4):
-        sent = mavlink.MAVLink_command_long_message(*OWN, number, 0, 0, 0, 0, 0, 0, 0, 0)
-        (message,) = MavlinkCodec(*OWN).decode(station.encode(sent))
-        assert commands.take(message, 0) == []
-    refused = [(one.command, one.result) for one in commands.refuse_beginnings()]
-    assert refused == [(START, REJECTED), (mavlink.MAV_CMD_USER_4, REJECTED)]
-    assert [commands.next(), commands.next(), commands.next()] == [Command.ABORT, Command.HOLD, None]
+def test_stations_abort_is_obeyed_while_an_operator_asks_for_a_start_in_every_step() -> None:
+    station = _ready()
+    node = station.setup.node
+    replies = list[CommandReply]()
 
+    def insist() -> None:
+        station.setup.fixes()
+        node.request(Command.START)
+        replies.extend(node.take_replies())
 
-LAUNCH = mavlink.MAV_CMD_USER_4
-
-
-def _given(number: int, sequence: int) -> Message:
-    """A command as it comes, the `sequence`-th message of its sender."""
-    sent = mavlink.MAVLink_command_long_message(*OWN, number, 0, 0, 0, 0, 0, 0, 0, 0)
-    (message,) = MavlinkCodec(*OWN).decode(MavlinkCodec(255, 190, first_number=sequence).encode(sent))
-    return message
-
-
-def _is_obeyed(commands: StationCommands, message: Message, t_s: float, *, accepts: bool = True) -> bool:
-    t_ns = round(t_s * 1e9)
-    answers = commands.take(message, t_ns)
-    if commands.next() is not None:
-        commands.answer(CommandReply(accepted=accepts, reason=""), t_ns)
-    return answers == []
-
-
-def test_command_that_begins_something_is_obeyed_once_however_often_its_datagram_comes() -> None:
-    commands = StationCommands()
-    assert _is_obeyed(commands, _given(LAUNCH, 7), 0.0)
-    assert _is_obeyed(commands, _given(HOLD, 8), 1.0)
-    for t_s in (1.1, 15.0, 29.0):
-        (answer,) = commands.take(_given(LAUNCH, 7), round(t_s * 1e9))
-        assert answer.result == REJECTED
-    assert _is_obeyed(commands, _given(LAUNCH, 9), 29.0)
-    assert _is_obeyed(commands, _given(LAUNCH, 7), 30.5)  # of a script that began its numbers anew
-
-
-def test_command_that_was_refused_may_come_again_and_what_ends_a_landing_always() -> None:
-    commands = StationCommands()
-    assert _is_obeyed(commands, _given(START, 7), 0.0, accepts=False)
-    assert _is_obeyed(commands, _given(START, 7), 0.1)
-    assert [_is_obeyed(commands, _given(ABORT, 8), t_s) for t_s in (1.0, 1.1, 2.0)] == [True] * 3
+    station.setup.run(0.5, insist)
+    assert node.phase is Phase.TAKEOFF
+    station.command(ABORT)
+    station.setup.run(0.1, insist)
+    assert station.answers(ABORT) == [(ACCEPTED, 255)]
+    assert replies[0].accepted
 
 
 @pytest.mark.slow
