@@ -89,7 +89,7 @@ class _Loop:
         self._pad_watch = PadWatch(zenoh, keys.pad)
         self._link_was_up: bool | None = None
         self._strangers_told = False
-        self._losses = Losses(node, self._sent, zenoh, log)
+        self._losses = Losses(node, self._sent, zenoh, log, signing=links.signing)
         self._computer = ComputerWatch()
 
     def run(self) -> Timings:

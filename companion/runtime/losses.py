@@ -4,6 +4,7 @@ from companion.autopilots.choice import WHY_REFUSED
 from companion.runtime.node import CompanionNode
 from companion.runtime.recorded_node import RecordingNode
 from companion.runtime.sent_frames import SentFrames
+from link.mavlink.signing_memory import SigningMemory
 from link.recording.log import Log
 from link.zenoh.session import ZenohSession
 
@@ -16,16 +17,26 @@ class Losses:
         sent: its frames, with their log.
         zenoh: session by which it publishes.
         log: of the program.
+        signing: where its time stamps are kept, if there are any.
     """
 
-    def __init__(self, node: CompanionNode, sent: SentFrames, zenoh: ZenohSession, log: Log) -> None:
+    def __init__(
+        self,
+        node: CompanionNode,
+        sent: SentFrames,
+        zenoh: ZenohSession,
+        log: Log,
+        *,
+        signing: SigningMemory | None = None,
+    ) -> None:
         self._node = node
         self._sent = sent
         self._zenoh = zenoh
         self._log = log
+        self._signing = signing
         self._was_heard = False
         self._refused_before: int | None = 0  # messages, when the autopilot was lost; None once they are told
-        self._are_records_told = self._are_setpoints_told = self._are_statuses_told = False
+        self._are_records_told = self._are_setpoints_told = self._are_statuses_told = self._are_stamps_told = False
 
     def say(self) -> None:
         """Say what has been lost since the last call and is not told yet."""
@@ -39,6 +50,10 @@ class Losses:
         if not self._are_statuses_told and (lost := self._node.publisher.unpublished + self._zenoh.unpublished):
             self._are_statuses_told = True
             self._log.warning("statuses are not published: no message holds them, or Zenoh takes none", lost=lost)
+
+        if not self._are_stamps_told and self._signing is not None and (why := self._signing.why_lost):
+            self._are_stamps_told = True
+            self._log.warning("time stamps of signatures are not kept: old frames may count after a restart", why=why)
 
     def _say_refused(self) -> None:
         """Say, once each time that the autopilot is not heard, that messages come and are not signed rightly."""

@@ -2,9 +2,12 @@
 
 The file has the newest time stamp of all and that of each stream, in a signature's units. It is written each second by
 a thread of its own. So a stream's stamp may be a second old when the program is killed, and is raised by as much when
-it is read: who goes on sending is past that before the program is back.
+it is read: who goes on sending is past that before the program is back. One program keeps its stamps there: a second
+one, which hears less, would put older ones in their place.
 """
 
+import fcntl
+import os
 import time
 from pathlib import Path
 from typing import Annotated
@@ -69,19 +72,27 @@ class SigningMemory:
         signing: of the session.
 
     Raises:
-        UserError: the file cannot be written.
+        UserError: the file cannot be written, or another program keeps its stamps there.
     """
 
     def __init__(self, path: Path, signing: Signing) -> None:
         self._signing = signing
         self._due_ns: int | None = None
-        sink = _File(path)
         try:
+            sink = _File(path)
             sink.write(self._present())
+        except BlockingIOError as error:
+            what = "another program keeps time stamps of signatures there"
+            raise UserError(f"{path}: {what}; end it, or name another place by --signing-stamps") from error
         except OSError as error:
             where = "name a place that may be written by --signing-stamps"
             raise UserError(f"{path}: cannot be written ({error.strerror}); {where}") from error
         self._recorder = BackgroundRecorder(sink, capacity=2)
+
+    @property
+    def why_lost(self) -> str:
+        """Why stamps could not be written; empty while all were."""
+        return self._recorder.why_dropped
 
     def poll(self, monotonic_ns: int) -> None:
         """Write when that is due; never waits."""
@@ -102,13 +113,20 @@ class SigningMemory:
 class _File:
     def __init__(self, path: Path) -> None:
         self._path = path
+        self._lock = os.open(path.with_name(f"{path.name}.lock"), os.O_RDWR | os.O_CREAT, 0o600)
+        try:
+            fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            os.close(self._lock)
+            raise
 
     def write(self, record: _Kept) -> None:
         """Replace the file as a whole."""
         replace_file(self._path, msgspec.json.encode(record))
 
     def close(self) -> None:
-        """Nothing is open."""
+        """Let another program keep its stamps there."""
+        os.close(self._lock)
 
 
 def _read(path: Path) -> _Kept:

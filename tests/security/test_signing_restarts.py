@@ -116,3 +116,24 @@ def test_stamps_are_kept_beside_the_key_and_a_place_that_cannot_be_written_is_to
     signing = open_signing(key, None)
     with pytest.raises(UserError, match="--signing-stamps"):
         SigningMemory(tmp_path / "no" / "folder", signing)
+
+
+def test_second_program_is_told_that_another_one_keeps_its_stamps_there(tmp_path: Path) -> None:
+    path, signing = tmp_path / "stamps", restored(tmp_path / "stamps", KEY, NOW_NS)
+    first = SigningMemory(path, signing)
+    taken(signing, frames(NOW_NS))
+    with pytest.raises(UserError, match="another program keeps time stamps"):
+        SigningMemory(path, restored(tmp_path / "none", KEY, 0))
+    first.close()
+    again = restarted(path, restored(path, KEY, NOW_NS), NOW_NS)
+    assert taken(again, frames(NOW_NS)) == 0
+
+
+def test_stamps_that_cannot_be_written_in_flight_are_noticed(tmp_path: Path) -> None:
+    folder = tmp_path / "folder"
+    folder.mkdir()
+    memory = SigningMemory(folder / "stamps", restored(folder / "stamps", KEY, NOW_NS))
+    assert memory.why_lost == ""
+    folder.rename(tmp_path / "elsewhere")
+    memory.close()  # writes the last
+    assert memory.why_lost == "No such file or directory"

@@ -4,6 +4,7 @@ import math
 from collections.abc import Callable
 from contextlib import closing
 from io import StringIO
+from pathlib import Path
 
 import pytest
 
@@ -14,6 +15,7 @@ from companion.runtime.losses import Losses
 from companion.runtime.sent_frames import SentFrames
 from link.mavlink.codec import MavlinkCodec
 from link.mavlink.signing import Signing, signing_timestamp
+from link.mavlink.signing_memory import SigningMemory
 from link.payloads.checks import PayloadError
 from link.recording.log import Log
 from link.transports.opening import open_transport
@@ -28,13 +30,13 @@ NOT_FINITE = Setpoint(
 )
 
 
-def said(setup: Setup, loses: Callable[[], None]) -> str:
+def said(setup: Setup, loses: Callable[[], None], signing: SigningMemory | None = None) -> str:
     """What the log has after a loss, and another one like it."""
     lines = StringIO()
     log = Log("companion", lines)
     with open_session(ZenohOptions()) as zenoh, closing(open_transport("udpin:127.0.0.1:0")) as transport:
         sent = SentFrames(transport, setup.node.autopilot.session, None)
-        losses = Losses(setup.node, sent, zenoh, log)
+        losses = Losses(setup.node, sent, zenoh, log, signing=signing)
         setup.run(1.0)
         losses.say()
         for _ in range(2):
@@ -85,3 +87,13 @@ def test_autopilot_that_was_never_heard_for_its_signatures_is_told() -> None:
     setup = Setup()
     setup.node = build_node(setup.config, KEYS, signing=Signing(KEY))
     assert said(setup, lambda: setup.run(1.0)).count("messages of MAVLink are refused") == 1
+
+
+def test_stamps_of_signatures_that_are_not_kept_are_told_once(tmp_path: Path) -> None:
+    folder = tmp_path / "folder"
+    folder.mkdir()
+    memory = SigningMemory(folder / "stamps", Signing(KEY))
+    folder.rename(tmp_path / "elsewhere")
+    told = said(Setup(), memory.close, memory)
+    assert told.count("time stamps of signatures are not kept") == 1
+    assert "No such file or directory" in told
