@@ -107,3 +107,11 @@ def test_options_within_a_line_are_kept_whole_and_blocks_of_code_are_not_touched
     block = "<pre><code>check --speed-max 5</code></pre>"
     found = with_whole_options(f"<p><code>check --speed-max 5</code></p>{block}")
     assert found == f'<p><code>check <span class="word">--speed-max</span> 5</code></p>{block}'
+
+
+@pytest.mark.parametrize("page", sorted(DOCS.glob("*.md")), ids=lambda page: page.name)
+def test_an_empty_line_ends_each_table_or_the_next_line_would_be_a_row_of_it(page: Path) -> None:
+    lines = [line.strip() for line in page.read_text(encoding="utf-8").splitlines()]
+    rows = [line.startswith("|") for line in lines]
+    swallowed = [after for row, after in zip(rows, lines[1:], strict=False) if row and after and after[0] != "|"]
+    assert swallowed == []
