@@ -20,7 +20,7 @@ LONG = $(addprefix tests/,integration/test_fly.py conformance/test_mavsdk.py sec
     integration/test_view.py scenarios/bench/test_bench.py integration/test_stations.py integration/test_lost_partners.py)
 ALONE = $(shell grep -rlF pytest.mark.alone tests --include='test_*.py' | sort)
 
-.PHONY: setup demo test check fast simulated wire docs lint style types lock fuzz clean
+.PHONY: setup demo test check fast simulated docs lint style types lock fuzz clean
 
 setup: .venv/.complete .venv/.kernels
 
@@ -53,20 +53,15 @@ check: fast lint
 fast: setup
 	$(BIN)/pytest -q -n 2 --dist loadscope --no-loadscope-reorder --hypothesis-profile=quick -m "not slow and not wire"
 
-# What measures time runs by itself, after the rest.
-test: setup style docs types simulated wire
+# What keeps time with the clock runs after the rest: what mostly waits two at a time, what measures time by itself.
+test: setup style docs types simulated
+	$(BIN)/pytest -q -n 2 --dist loadscope --no-loadscope-reorder -m "wire and not alone" $(LONG) $(filter-out $(LONG),$(WIRE))
 	$(BIN)/pytest -q -m alone $(ALONE)
 
-# A module's tests share what they fly; in the order of the files the many short ones come last. They take what is left
-# of the cores beside the types and what keeps time with the clock.
+# A module's tests share what they fly; in the order of the files the many short ones come last. Begun while the types,
+# which take one core, are checked.
 simulated: setup
-	nice -n 19 $(BIN)/pytest -q -n 2 --dist loadscope --no-loadscope-reorder -m "not wire"
-
-# What keeps time with the clock mostly waits. Its lines are shown at its end, not between those of the others.
-wire: setup
-	@mkdir -p build
-	$(BIN)/pytest -q -n 2 --dist loadscope --no-loadscope-reorder -m "wire and not alone" \
-	    $(LONG) $(filter-out $(LONG),$(WIRE)) >build/wire.txt 2>&1; status=$$?; cat build/wire.txt; exit $$status
+	$(BIN)/pytest -q -n 2 --dist loadscope --no-loadscope-reorder -m "not wire"
 
 # Drawn anew each time; FRAMES=10000000 goes on for longer. What it finds becomes an example in tests/security.
 fuzz: setup
