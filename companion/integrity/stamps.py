@@ -70,8 +70,8 @@ class FixStamps(Struct, frozen=True, kw_only=True):
 
     @property
     def apart_s(self) -> float | None:
-        """How far the newest fixes are apart by their stamps: the less of two times, for one may have been lost."""
-        taken_s = [one.at_ns * 1e-9 - one.age_s for one in (self.recent or self.ages)[-3:]]
+        """How far the newest fixes are apart by their stamps: the least of three times, for some may have been lost."""
+        taken_s = [one.at_ns * 1e-9 - one.age_s for one in (self.recent or self.ages)[-4:]]
         return min((after - before for before, after in pairwise(taken_s)), default=None)
 
 

@@ -50,7 +50,6 @@ class Losses:
         if not self._are_statuses_told and (lost := self._node.publisher.unpublished + self._zenoh.unpublished):
             self._are_statuses_told = True
             self._log.warning("statuses are not published: no message holds them, or Zenoh takes none", lost=lost)
-
         if not self._are_stamps_told and self._signing is not None and (why := self._signing.why_lost):
             self._are_stamps_told = True
             self._log.warning("time stamps of signatures are not kept: old frames may count after a restart", why=why)

@@ -33,12 +33,13 @@ def heard_at(*taken_s: float) -> FixStamps:
         ((), None),
         ((0.0,), None),
         ((0.0, 1.0), 1.0),
-        ((0.0, 0.2, 3.0), 0.2),
+        ((0.0, 0.2, 3.0, 6.0), 0.2),
+        ((0.0, 0.2, 3.2, 6.2, 9.2), 3.0),
         ((0.0, 1.0, 2.1), 1.0),
         ((0.0, 30.0), None),
     ],
 )
-def test_fixes_are_as_far_apart_as_the_nearest_of_the_last_three(
+def test_fixes_are_as_far_apart_as_the_nearest_of_the_last_four(
     taken_s: tuple[float, ...], apart_s: float | None
 ) -> None:
     assert heard_at(*taken_s).apart_s == (None if apart_s is None else pytest.approx(apart_s, abs=1e-6))

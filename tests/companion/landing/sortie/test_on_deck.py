@@ -111,11 +111,17 @@ def wait(flight: Flight, time_s: float, tilt_rad: float = 0.0) -> None:
         flight.step()
 
 
-def test_drone_that_was_disarmed_on_the_deck_starts_its_motors_by_a_new_order_only() -> None:
+def armed_on_deck() -> Flight:
+    """A launch whose motors turn since this step."""
     flight = on_deck()
     flight.step(Command.LAUNCH)
     while not flight.view.armed:
         flight.step()
+    return flight
+
+
+def test_drone_that_was_disarmed_on_the_deck_starts_its_motors_by_a_new_order_only() -> None:
+    flight = armed_on_deck()
     wait(flight, 0.4, tilt_rad=0.2)  # the deck is restless again
     assert flight.history[-1:] == [Phase.ON_DECK]
     flight.view = replace(flight.view, armed=False)  # a switch, a ground station, or the autopilot's own time-out
@@ -126,11 +132,8 @@ def test_drone_that_was_disarmed_on_the_deck_starts_its_motors_by_a_new_order_on
 
 
 def test_motors_that_idle_on_a_restless_deck_are_stopped_and_start_again_at_its_next_quiet_moment() -> None:
-    flight = on_deck()
+    flight = armed_on_deck()
     flight.refuses_plain_disarm = False
-    flight.step(Command.LAUNCH)
-    while not flight.view.armed:
-        flight.step()
     idle_max_s = CONFIG.sortie.launch.idle_max_s
     wait(flight, idle_max_s - 0.1, tilt_rad=0.2)
     assert flight.view.armed
@@ -142,11 +145,8 @@ def test_motors_that_idle_on_a_restless_deck_are_stopped_and_start_again_at_its_
 
 
 def test_no_lift_off_begins_while_the_motors_are_being_stopped() -> None:
-    flight = on_deck()
+    flight = armed_on_deck()
     flight.refuses_plain_disarm = True  # they turn on
-    flight.step(Command.LAUNCH)
-    while not flight.view.armed:
-        flight.step()
     wait(flight, CONFIG.sortie.launch.idle_max_s + 0.1, tilt_rad=0.2)
     wait(flight, 3.0)
     assert (flight.view.armed, flight.phase) == (True, Phase.ON_DECK)
