@@ -5,6 +5,8 @@ Pure: the same memory, inputs and system give the same result, in flight, in sim
 
 import math
 
+import numpy as np
+
 from companion.config.companion import CompanionConfig
 from companion.integrity.heights import is_road_elsewhere, update_ground
 from companion.integrity.vehicle_data import update_course
@@ -154,6 +156,7 @@ def _situation(memory: StepMemory, pad: PadPath | None, inputs: StepInputs, syst
             answering_s=inputs.link_delay.answering_s,
             rides_m=memory.model.ride.above_m,
             pushed_m_s2=_pushed_m_s2(memory),
+            takes_m_s2=_takes_m_s2(memory, pad),
         ),
         waiting_point_enu_m=memory.places.waiting_point_enu_m,
         rival=inputs.rival,
@@ -166,6 +169,12 @@ def _pushed_m_s2(memory: StepMemory) -> float:
     """Return how hard the air pushes the drone in such a gust as is felt once in some minutes."""
     steady_m_s2 = math.hypot(*memory.model.tracking.air_enu_m_s2.tolist())
     return steady_m_s2 + _GUST_STDS * memory.forecast.gusts.push_std_m_s2
+
+
+def _takes_m_s2(memory: StepMemory, pad: PadPath | None) -> float:
+    """Return what it takes to accelerate as the pad does and to hold against the air."""
+    turns = np.zeros(2) if pad is None else pad.acceleration_enu_m_s2[0, :2]
+    return math.hypot(*(turns + memory.model.tracking.holds_enu_m_s2).tolist())
 
 
 def _look(memory: StepMemory, situation: Situation, pad: PadPath | None, config: CompanionConfig) -> StepMemory:

@@ -107,6 +107,10 @@ class Reason(Enum):
     CHASE_TOO_LONG = "chase took longer than {:g} s"
     ALIGN_TOO_LONG = "align took longer than {:g} s"
     DESCENT_TOO_LONG = "descend took longer than {:g} s"
+    TILT_TOO_SMALL = (
+        "to stay above the pad in this air takes {:.0f} degrees of tilt, and the autopilot's limit leaves {:.0f} to "
+        "plan with: raise that limit or drive slower"
+    )
     ABOVE_AFTER_CONTACT = "{:.1f} m above the pad after contact"
     BELOW_AFTER_CONTACT = "below the pad after contact"
     LEFT_AFTER_CONTACT = "left behind by the pad after contact, in the air"

@@ -95,7 +95,7 @@ def fly(
         dt_s=period_s,
     )
     request = _for_the_drone(request, memory, inputs, system.config.guidance.kind, ahead_s=ahead_s)
-    request = replace(request, limits=limit_tilt(request, model.tracking.holds_enu_m_s2))
+    request = limit_tilt(request, model.tracking.holds_enu_m_s2)
     guidance, plan = system.guidance.plan(model.guidance, request)
     flown = flown_plan(plan, period_s, float(aim.floor_enu_m[0]), inputs.shaping, limits, starts_ns=starts_ns)
     levelling = levelling_now(memory, situation, inputs, system.config)

@@ -9,7 +9,9 @@ height that the rate carries on: what sinks slows down towards it.
 A norm `|w| <= c` of both horizontal axes is a polygon: `n w <= b` along `DIRECTIONS` unit vectors n, both ways. The
 polygons of acceleration and jerk are inscribed in the circle, corners on the axes: an axis may use the whole norm, no
 direction more. The polygon of the speed is about the circle, its sides on the axes, so that nothing of a speed that the
-drone already has must be given up as the axes turn. All functions are compiled.
+drone already has must be given up as the axes turn. What the drone leans for is within a circle, too: the path's
+acceleration and what holds against the air, together. So drag leaves less to go faster, more to brake, and to turn
+nearly all. All functions are compiled.
 """
 
 import math
@@ -42,6 +44,12 @@ PUSH_NORMALS = np.stack(
 
 AUTHORITY = 0.98
 """Share of the limits that the way back uses, so that the solver has room to follow it."""
+
+LEFT_MIN_SHARE = 0.2
+"""Of the tilt limit: with less no plan brakes, and a steady wind that needs more is not flown in."""
+
+Thrust = tuple[float, float, float]
+"""The largest horizontal thrust by mass, and that which holds against the air, along both axes (m/s^2)."""
 
 _TINY = 1e-12
 
@@ -97,22 +105,52 @@ def reachable_floor(
 
 
 @compiled_kernel
-def level_bounds(state: Array, norms: tuple[float, float, float], end_s: Array, rows: Bounds) -> None:
+def pushes_left(push_m_s2: float, thrust: Thrust) -> Array:
+    """Return the bounds (2, d) of the acceleration along `PUSH_NORMALS`, and against them.
+
+    Args:
+        push_m_s2: the norm of the acceleration alone.
+        thrust: within which it is together with what holds against the air.
+    """
+    most, holds_x, holds_y = thrust
+    left = np.empty((2, len(PUSH_NORMALS)))
+    for side in range(len(PUSH_NORMALS)):
+        holds = PUSH_NORMALS[side, 0] * holds_x + PUSH_NORMALS[side, 1] * holds_y
+        left[0, side] = min(INSCRIBED * push_m_s2, max(INSCRIBED * most - holds, LEFT_MIN_SHARE * most))
+        left[1, side] = min(INSCRIBED * push_m_s2, max(INSCRIBED * most + holds, LEFT_MIN_SHARE * most))
+    return left
+
+
+@compiled_kernel
+def push_along(left: Array, x: float, y: float) -> float:
+    """Return how much acceleration the bounds (2, d) of `pushes_left` leave along the unit vector (x, y)."""
+    most = math.inf
+    for side in range(len(PUSH_NORMALS)):
+        along = PUSH_NORMALS[side, 0] * x + PUSH_NORMALS[side, 1] * y
+        most = min(most, (left[0, side] if along > 0.0 else left[1, side]) / max(abs(along), _TINY))
+    return most
+
+
+@compiled_kernel
+def level_bounds(state: Array, norms: tuple[float, float, float], thrust: Thrust, end_s: Array, rows: Bounds) -> None:
     """Write the bounds of the rows of `constraints.level_rows`.
 
     Args:
         state: (3, k) position, velocity and acceleration; the first two axes are horizontal.
         norms: of speed, acceleration and jerk.
+        thrust: see `pushes_left`.
         end_s: (m,) the ends of the blocks.
         rows: (c,) each, where they are written.
     """
     lower, upper = rows
-    speed, push, jerk = norms[0], INSCRIBED * norms[1], INSCRIBED * norms[2]
+    speed, jerk = norms[0], INSCRIBED * norms[2]
     moves = len(end_s)
     row = len(PUSH_NORMALS) * moves
     lower[:], upper[:] = -math.inf, math.inf
     lower[:row], upper[:row] = -jerk, jerk
-    left = braked(state, AUTHORITY * push, AUTHORITY * jerk, end_s)
+    pushes, fast = pushes_left(norms[1], thrust), max(math.hypot(state[1, 0], state[1, 1]), _TINY)
+    braking = min(INSCRIBED * norms[1], push_along(pushes, -state[1, 0] / fast, -state[1, 1] / fast))
+    left = braked(state, AUTHORITY * braking, AUTHORITY * jerk, end_s)
     for way in (1.0, -1.0):
         for side in range(len(SPEED_NORMALS)):
             nx, ny = SPEED_NORMALS[side, 0], SPEED_NORMALS[side, 1]
@@ -123,13 +161,13 @@ def level_bounds(state: Array, norms: tuple[float, float, float], end_s: Array, 
                 upper[row + move] = most - velocity - acceleration * end_s[move]
             row += moves
     size = max(math.hypot(state[2, 0], state[2, 1]), _TINY)
-    for way in (1.0, -1.0):
+    for against in range(2):
         for side in range(len(PUSH_NORMALS)):
-            nx, ny = PUSH_NORMALS[side, 0], PUSH_NORMALS[side, 1]
-            acceleration = way * (nx * state[2, 0] + ny * state[2, 1])
+            along = PUSH_NORMALS[side, 0] * state[2, 0] + PUSH_NORMALS[side, 1] * state[2, 1]
+            acceleration = (1.0 - 2.0 * against) * along
             for move in range(moves):
                 eased = max(1.0 - AUTHORITY * jerk * end_s[move] / size, 0.0)
-                upper[row + move] = max(push, eased * acceleration) - acceleration
+                upper[row + move] = max(pushes[against, side], eased * acceleration) - acceleration
             row += moves
     lower[row:] = 0.0
 

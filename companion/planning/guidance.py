@@ -45,19 +45,35 @@ class Target(Struct, frozen=True, kw_only=True, eq=False):
     acceleration_enu_m_s2: Array
 
 
+class Leaning(Struct, frozen=True, kw_only=True, eq=False):
+    """What the drone leans for: to accelerate along its path, and to hold against the air.
+
+    Attributes:
+        path_max_m_s2: norm of the path's acceleration alone.
+        most_m_s2: norm of both together, the horizontal thrust by mass of the largest tilt.
+        holds_enu_m_s2: (2,) what it leans beyond what its path accelerates by.
+    """
+
+    path_max_m_s2: float
+    most_m_s2: float
+    holds_enu_m_s2: Array
+
+
 class PlanRequest(Struct, frozen=True, kw_only=True, eq=False):
     """What a guidance law plans from.
 
     Attributes:
         state: the virtual model now.
         target: where it is wanted.
-        limits: what may be asked of the drone.
+        limits: what may be asked of the drone, its acceleration in the direction in which it is needed.
         floor_enu_m: (n,) lowest allowed height in W at the target's offsets.
         touched_enu_m: (n,) in place of a floor, where a pad is to be touched: the lowest that the height in W, carried
             on by its rate for `MpcConfig.touch_time_s`, may be. Laws without bounds on a plan pass it over.
         dt_s: control period, after which the next plan is made.
         following: how the drone deviates from what is planned, beside what the target makes up for already; None where
             it follows at once. Only the default law takes it into account.
+        leaning: what bounds the acceleration in each direction; None where that of the limits does in all. Only the
+            default law tells directions apart.
     """
 
     state: ReferenceState
@@ -67,6 +83,7 @@ class PlanRequest(Struct, frozen=True, kw_only=True, eq=False):
     dt_s: float
     touched_enu_m: Array | None = None
     following: Following | None = None
+    leaning: Leaning | None = None
 
 
 class Trajectory(Struct, frozen=True, kw_only=True, eq=False):
@@ -146,6 +163,15 @@ def limits_of(request: PlanRequest) -> tuple[float, float, float, float, float, 
     if not (math.isfinite(sum(values)) and min(values) > 0.0):
         raise ValueError(f"the drone's limits must be positive: {limits}")
     return values
+
+
+def leaning_of(request: PlanRequest) -> tuple[float, float, float, float]:
+    """Return the leaning as the compiled calls take it: its two norms, then what holds against the air, in W."""
+    leaning = request.leaning
+    if leaning is None:
+        return float(request.limits.acceleration_max_m_s2), math.inf, 0.0, 0.0
+    x, y = leaning.holds_enu_m_s2.tolist()
+    return float(leaning.path_max_m_s2), float(leaning.most_m_s2), x, y
 
 
 def is_finite_state(state: ReferenceState) -> bool:

@@ -23,6 +23,7 @@ from companion.planning.guidance import (
     ReferenceState,
     Trajectory,
     is_finite_state,
+    leaning_of,
     limits_of,
     with_finite_state,
 )
@@ -86,6 +87,7 @@ class Mpc:
             (*resampler.taken(request.target), resampler.taken_line(floor_enu_m)),
             lead_s,
             limits,
+            leaning_of(request),
             (resampler.left, resampler.weights),
             (*self._statics, (weights, self._upright)),
             posed,

@@ -102,6 +102,7 @@ def pose(
     target: tuple[Array, Array, Array, Array],
     lead_s: float,
     limits: PlainLimits,
+    leaning: tuple[float, float, float, float],
     sampling: Sampling,
     statics: Statics,
     posed: Posed,
@@ -113,6 +114,7 @@ def pose(
         target: position, velocity and acceleration (n, 3) in W, and the lowest height (n,), at its own offsets.
         lead_s: of the floor, see `envelope.vertical_bounds`; the way itself keeps to one without a lead only.
         limits: of the drone.
+        leaning: the norm of the path's acceleration, then `envelope.Thrust` in W.
         sampling: from the target's offsets to the grid's `nodes_s`.
         statics: of the law.
         posed: where it is written.
@@ -135,12 +137,14 @@ def pose(
         x[:2], grid.nodes_s, turned, lowest, rates, numbers.intercept_fraction, numbers.intercept_time_min_s
     )
     jerk = mean_jerks(turned[2], statics[1], grid.move_s)
-    norms = (most.speed_m_s, most.acceleration_m_s2, most.jerk_m_s3)
+    norms = (most.speed_m_s, leaning[0], most.jerk_m_s3)
+    c, s = direction
+    thrust = (leaning[1], c * leaning[2] + s * leaning[3], c * leaning[3] - s * leaning[2])
     vertical = (most.descent_m_s, most.climb_m_s, most.vertical_acceleration_m_s2, most.vertical_jerk_m_s3)
     slopes = slopes_of(statics[3][0], statics[3][1], x, reference, jerk)
     put_linear(level[0], slopes[:2], numbers.slack_weight)
     put_linear(upright[0], slopes[2:], numbers.slack_weight)
-    level_bounds(x, norms, end_s, level[1:])
+    level_bounds(x, norms, thrust, end_s, level[1:])
     vertical_bounds(x[:, 2], floor[1:], lead_s, vertical, node_s, end_s, upright[1:])
     return math.isfinite(total_of(state, target) + sampling[1][0, 0, 0])
 

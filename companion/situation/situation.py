@@ -118,6 +118,7 @@ class Following(Struct, frozen=True, kw_only=True):
         answering_s: how long ago it began to show that without a gap; None of one that never does.
         rides_m: the lowest foot above that of a level drone on the virtual model, when it could touch nothing.
         pushed_m_s2: horizontal thrust by mass that holds against the air, in a gust of three standard deviations.
+        takes_m_s2: the same that a drone takes which stays above the pad, in this air.
     """
 
     error_m: float
@@ -129,6 +130,7 @@ class Following(Struct, frozen=True, kw_only=True):
     answering_s: float | None = None
     rides_m: float = 0.0
     pushed_m_s2: float = 0.0
+    takes_m_s2: float = 0.0
 
 
 class Situation(Struct, frozen=True, kw_only=True, eq=False):

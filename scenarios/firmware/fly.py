@@ -13,11 +13,11 @@ from link.records import replace
 from link.transports.opening import Transport, open_transport
 from link.zenoh.keys import Keys
 from link.zenoh.session import ZenohOptions, open_session
-from scenarios.config import Scenario
+from scenarios.config import FirmwareName, Scenario
 from scenarios.firmware.flight import FirmwareFlight, listen
 from scenarios.firmware.options import FlyOptions
 from scenarios.firmware.sortie import FirmwareSortie, departing_from_under, start_of
-from scenarios.firmware.truth import DRAG_PER_MASS_HZ, NAMES
+from scenarios.firmware.truth import AIRFRAMES, NAMES
 from scenarios.firmware.watch import FirmwareWatch
 from scenarios.processes.programs import MODULES, ProcessGroup, Program, free_tcp_endpoint
 from scenarios.recordings.recording import Recording
@@ -27,7 +27,7 @@ from scenarios.recordings.truth_file import TruthFile
 from scenarios.scoring.touchdown import ScoreRules, rules_of
 from scenarios.sortie.score import landing_from_ns, score_sortie
 from scenarios.sortie.script import SortieOperator, stations_of
-from sim_autopilot.runtime.config import DatumConfig
+from sim_autopilot.runtime.config import DatumConfig, DroneConfig
 
 _READY_S = 120.0  # of wall time for the autopilot's clock, receiver and truth, and for the companion to meet it
 # The ground is the roof, with the pad on it.
@@ -52,7 +52,7 @@ def fly(scenario: Scenario, options: FlyOptions, progress: Progress) -> RunOutco
         if options.sortie and options.ship_speed_m_s is None:
             datum = watch.let_it_stand_at(start_of(scenario, options.seed))
         firmware = NAMES.get(watch.session.autopilot or 0, scenario.firmware)
-        placed = _place(scenario, datum).model_copy(update={"firmware": firmware})
+        placed = _flown(_place(scenario, datum), firmware)
         write_text(options.folder / "scenario.toml", dump_toml(placed))
         write_text(options.folder / "companion.toml", dump_toml(placed.system.companion))
         flown = (placed, options, watch, keys, zenoh)
@@ -61,10 +61,8 @@ def fly(scenario: Scenario, options: FlyOptions, progress: Progress) -> RunOutco
             ended = flight.run(transport, processes, progress)
         if options.record:
             _write_truth(placed, options, keys, flight.recording)
-    # The drag over a mass of 1 kg; there is no tier for a drone that came near and did not land.
-    drag_hz = DRAG_PER_MASS_HZ.get(watch.session.autopilot or 0, 0.0)
-    carries = options.ship_speed_m_s is not None
-    rules = replace(rules_of(placed), mass_kg=1.0, drag_n_s_m=drag_hz, report_rule=False, carries=carries)
+    # There is no tier for a drone that came near and did not land.
+    rules = replace(rules_of(placed), report_rule=False, carries=options.ship_speed_m_s is not None)
     if operator is None:
         result = result_table(placed, options.seed, flight.recording, ended, rules)
     else:
@@ -113,6 +111,13 @@ def _place(scenario: Scenario, datum: Datum) -> Scenario:
         altitude_m=datum.altitude_m,
     )
     return scenario.model_copy(update={"vehicle": vehicle, "system": system}).with_run(datum=place)
+
+
+def _flown(scenario: Scenario, firmware: FirmwareName) -> Scenario:
+    """Return the scenario with the firmware that flies, and the drone that it simulates."""
+    drone = DroneConfig(airframe=AIRFRAMES[firmware])
+    system = scenario.system.model_copy(update={"drone": drone})
+    return scenario.model_copy(update={"firmware": firmware, "system": system})
 
 
 def _flat(scenario: Scenario) -> Scenario:

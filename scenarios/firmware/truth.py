@@ -7,6 +7,7 @@ late on a machine that keeps up; at 8 m/s each 10 ms would put the drone 8 cm be
 
 import math
 from dataclasses import dataclass
+from typing import Literal
 
 from link.frames.geodesy import Datum, enu_from_geodetic
 from link.frames.rotations import (
@@ -43,8 +44,8 @@ NAMES: dict[int, FirmwareName] = {
 DATED_BY = {"SIM_STATE": "ATTITUDE"}
 """Messages without a time, and the one that is sent together with them, just before, at the same rate."""
 
-DRAG_PER_MASS_HZ = {mavlink.MAV_AUTOPILOT_ARDUPILOTMEGA: 0.555, mavlink.MAV_AUTOPILOT_PX4: 0.3}
-"""Of the simulated airframes, for the trim: ArduPilot's flies 10.2 m/s at 30 degrees, PX4's has SIH_KDV 0.3 at 1 kg."""
+AIRFRAMES: dict[str, Literal["arducopter", "px4"]] = {"px4": "px4", "ardupilot": "arducopter"}
+"""The drone that each firmware simulates."""
 
 _DEGREES_1E7 = math.radians(1e-7)
 _TURNING_RAD_S = 700.0  # told of each rotor while the motors are armed; the score wants to know only whether they turn

@@ -8,6 +8,7 @@ import numpy as np
 
 from link.errors import UserError
 from link.transports.opening import open_transport
+from scenarios.firmware.truth import AIRFRAMES
 from scenarios.identify.pilot import Flight, Pilot, Stage
 from sim_autopilot.interfaces import AutopilotConfig
 from sim_autopilot.runtime.build import autopilot_config
@@ -17,8 +18,6 @@ from sim_autopilot.runtime.node import AutopilotNode
 _POLL_S = 0.002
 _LOCAL_NS = 1_700_000_000_000_000_000  # the clock of a flight in lockstep, which is no part of any result
 _AIR = np.zeros(3)
-AIRFRAMES = {"px4": "px4", "ardupilot": "arducopter"}
-"""The drone of each firmware's own simulation, so that the firmwares alone are compared."""
 
 
 def fly_endpoint(device: str, told: Callable[[Stage], None]) -> Flight:

@@ -32,6 +32,7 @@ class ScoreRules:
         waiting_point_enu_m: whose passing by the vehicle starts the manoeuvre.
         mass_kg: of the drone, for the trim.
         drag_n_s_m: linear drag of the drone on airspeed, for the trim.
+        drag_n_s2_m2: quadratic drag, for the trim.
         wind_mean_enu_m_s: mean wind, for the trim.
         fence_radius_m: horizontal, about the origin of W.
         fence_drives_along: it is about the vehicle, which is a sortie's home wherever it drives.
@@ -44,6 +45,7 @@ class ScoreRules:
     waiting_point_enu_m: Vector3
     mass_kg: float
     drag_n_s_m: float
+    drag_n_s2_m2: float = 0.0
     wind_mean_enu_m_s: Vector3 = (0.0, 0.0, 0.0)
     fence_radius_m: float = math.inf
     fence_drives_along: bool = False
@@ -70,6 +72,7 @@ def rules_of(scenario: Scenario, *, wind_mean_enu_m_s: Vector3 = (0.0, 0.0, 0.0)
         waiting_point_enu_m=scenario.run.waiting_point_enu_m,
         mass_kg=airframe.mass_kg,
         drag_n_s_m=airframe.drag_n_s_m,
+        drag_n_s2_m2=airframe.drag_n_s2_m2,
         wind_mean_enu_m_s=wind_mean_enu_m_s,
         fence_radius_m=scenario.run.fence_radius_m,
         report_rule=vehicle.roof_height_m == 0.0,
@@ -126,7 +129,8 @@ def landing_of(log: TruthLog, contact: Contact, rules: ScoreRules) -> Landing:
 def trims_rad(velocity_enu_m_s: Array, rules: ScoreRules) -> Array:
     """Return the tilts (n,) of steady flight at velocities (n, 3) in W in the mean wind, atan(drag / weight)."""
     airspeed_m_s = np.linalg.norm(velocity_enu_m_s[:, :2] - np.array(rules.wind_mean_enu_m_s[:2]), axis=1)
-    return np.asarray(np.arctan(rules.drag_n_s_m * airspeed_m_s / (rules.mass_kg * GRAVITY_M_S2)))
+    drag_n = (rules.drag_n_s_m + rules.drag_n_s2_m2 * airspeed_m_s) * airspeed_m_s
+    return np.asarray(np.arctan(drag_n / (rules.mass_kg * GRAVITY_M_S2)))
 
 
 def _on_pad(position_v_m: Array, box: Box) -> bool:

@@ -5,6 +5,7 @@ import math
 from companion.autopilots.messages import is_arming, may_turn, was_asked_to_arm
 from companion.config.companion import CompanionConfig
 from companion.config.planning import LandingStyle
+from companion.core.data import GRAVITY_M_S2
 from companion.core.reasons import Cause, Reason
 from companion.landing.decisions.aborts import (
     ABORTS,
@@ -37,6 +38,7 @@ from companion.vehicle.pad_reach import left_behind_m, over_pad_radius_m
 
 _COMMITTED = (*MISSED, CONTACT_RISKY)
 _STDS = 2.0  # by which the pad may be elsewhere
+_NEARLY_ALL = 0.95  # of 4.8 m/s^2, for 30 degrees: by what is left a drone comes nearer by a metre in 4 s
 
 
 def decide(progress: Progress, control: ControlMemory, s: Situation, config: CompanionConfig) -> Decision | None:
@@ -124,8 +126,18 @@ def _time_limit(progress: Progress, control: ControlMemory, s: Situation, config
     waits_s = min(waited_s(progress, s.monotonic_ns), config.descent.risk.wait_max_s)
     if limit_s is not None and in_phase_s - waits_s > limit_s:
         not_placed = why_unplaced(s) if progress.phase is Phase.ALIGN else None
-        return Event.TIME_LIMIT, not_placed or Cause(TOO_LONG[progress.phase], (limit_s,))
+        held_back = _held_back(s) if progress.phase in (Phase.CHASE, Phase.ALIGN) else None
+        return Event.TIME_LIMIT, not_placed or held_back or Cause(TOO_LONG[progress.phase], (limit_s,))
     return None
+
+
+def _held_back(s: Situation) -> Cause | None:
+    """Return that the pad's turn and the air take nearly all that the drone may lean, None where they do not."""
+    most_m_s2 = math.inf if s.limits is None else s.limits.tilt_acceleration_m_s2
+    if s.following.takes_m_s2 < _NEARLY_ALL * most_m_s2:
+        return None
+    takes_deg, most_deg = (math.degrees(math.atan(x / GRAVITY_M_S2)) for x in (s.following.takes_m_s2, most_m_s2))
+    return Cause(Reason.TILT_TOO_SMALL, (takes_deg, most_deg))
 
 
 def arming_refused(progress: Progress, control: ControlMemory, s: Situation) -> Decision | None:

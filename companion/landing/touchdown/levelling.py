@@ -12,12 +12,13 @@ import numpy as np
 from msgspec import Struct
 
 from companion.config.companion import CompanionConfig
-from companion.core.data import GRAVITY_M_S2, Array, FlightLimits
+from companion.core.data import GRAVITY_M_S2, Array
 from companion.forecast.steering import lean_change
 from companion.landing.state.memory import StepMemory
 from companion.landing.state.step_data import StepInputs
 from companion.landing.steering.flown_plan import FlownPlan
-from companion.planning.guidance import PlanRequest
+from companion.planning.envelope import LEFT_MIN_SHARE
+from companion.planning.guidance import Leaning, PlanRequest
 from companion.situation.own_drone import lowest_foot
 from companion.situation.phases import Phase
 from companion.situation.situation import Approach, Situation
@@ -25,7 +26,6 @@ from companion.vehicle.pad import PadPath, slope_at
 from companion.vehicle.pad_reach import over_pad_radius_m
 from link.records import replace
 
-_LEFT_MIN_SHARE = 0.2  # of the tilt limit: with less no plan brakes, and a steady wind that needs more is not flown in
 _SEEN_OFF_MAX_M = 1.0  # what a range finder sees farther off is not the pad: a roof is 1.5 m above the road
 
 
@@ -128,12 +128,12 @@ def levelled(flown: FlownPlan, levelling: Levelling) -> FlownPlan:
     )
 
 
-def limit_tilt(request: PlanRequest, holds_enu_m_s2: Array) -> FlightLimits:
-    """Return the limits with the acceleration that the largest tilt leaves in the direction in which it is needed.
+def limit_tilt(request: PlanRequest, holds_enu_m_s2: Array) -> PlanRequest:
+    """Return the request with what the largest tilt leaves of the acceleration.
 
     Of the horizontal thrust by mass R some holds against the air and makes up for the deviation, w. Along the unit
-    vector d there is left `-(d w) + sqrt(R^2 - w^2 + (d w)^2)`: less to go faster, more to brake. Where the path's
-    present acceleration takes more than R, that is to shrink first, though another direction will be needed.
+    vector d there is left `-(d w) + sqrt(R^2 - w^2 + (d w)^2)`: less to go faster, more to brake. The request's limits
+    get what is left in the direction in which it is needed, which is by how much the way to a far target brakes.
 
     Args:
         request: of the plan; its target tells what is needed, in a second's time.
@@ -142,14 +142,14 @@ def limit_tilt(request: PlanRequest, holds_enu_m_s2: Array) -> FlightLimits:
     limits, state, target = request.limits, request.state, request.target
     most_m_s2 = limits.tilt_acceleration_m_s2
     if not math.isfinite(most_m_s2):
-        return limits
+        return request
     needed = target.acceleration_enu_m_s2[0] + target.velocity_enu_m_s[0] - state.velocity_enu_m_s
     needed = (needed + target.position_enu_m[0] - state.position_enu_m)[:2]
-    left_m_s2, here = _left_m_s2(needed, holds_enu_m_s2, most_m_s2), state.acceleration_enu_m_s2[:2]
-    if math.hypot(*(here + holds_enu_m_s2).tolist()) > most_m_s2:
-        left_m_s2 = min(left_m_s2, _left_m_s2(here, holds_enu_m_s2, most_m_s2))
-    left_m_s2 = max(left_m_s2, _LEFT_MIN_SHARE * most_m_s2)
-    return replace(limits, acceleration_max_m_s2=min(limits.acceleration_max_m_s2, left_m_s2))
+    left_m_s2 = max(_left_m_s2(needed, holds_enu_m_s2, most_m_s2), LEFT_MIN_SHARE * most_m_s2)
+    path_max_m_s2 = limits.acceleration_max_m_s2
+    leaning = Leaning(path_max_m_s2=path_max_m_s2, most_m_s2=most_m_s2, holds_enu_m_s2=holds_enu_m_s2)
+    limits = replace(limits, acceleration_max_m_s2=min(path_max_m_s2, left_m_s2))
+    return replace(request, limits=limits, leaning=leaning)
 
 
 def _left_m_s2(direction: Array, holds_enu_m_s2: Array, most_m_s2: float) -> float:

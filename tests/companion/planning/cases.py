@@ -7,7 +7,8 @@ from typing import Protocol, TypeVar
 import numpy as np
 
 from companion.core.data import Array, FlightLimits
-from companion.planning.guidance import PlanRequest, PlanResult, PlanStatus, ReferenceState, Target
+from companion.planning.guidance import Leaning, PlanRequest, PlanResult, PlanStatus, ReferenceState, Target
+from link.records import replace
 
 LIMITS = FlightLimits(
     speed_max_m_s=20.0,
@@ -112,8 +113,12 @@ def fly(
     floor_m: float = NO_FLOOR_M,
     dt_s: float = DT_S,
     noise_m: Callable[[float], Array] = lambda _: np.zeros(3),
+    leaning: Callable[[ReferenceState], Leaning | None] = lambda _: None,
 ) -> Flight:
-    """Follow `motion`, forecast exactly but for `noise_m` on the positions; every plan must be solved."""
+    """Follow `motion`, forecast exactly but for `noise_m` on the positions; every plan must be solved.
+
+    `leaning` is that of the request in each state.
+    """
     memory: M | None = None
     states, results = [state], list[PlanResult]()
     times: Array = np.arange(round(duration_s / dt_s), dtype=np.float64) * dt_s
@@ -125,7 +130,8 @@ def fly(
             velocity_enu_m_s=target.velocity_enu_m_s,
             acceleration_enu_m_s2=target.acceleration_enu_m_s2,
         )
-        memory, result = guidance.plan(memory, request_of(states[-1], noisy, limits, floor_m, dt_s))
+        request = request_of(states[-1], noisy, limits, floor_m, dt_s)
+        memory, result = guidance.plan(memory, replace(request, leaning=leaning(states[-1])))
         assert result.status is PlanStatus.SOLVED
         states.append(result.next_state)
         results.append(result)

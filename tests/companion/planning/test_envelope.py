@@ -10,12 +10,21 @@ from companion.config.planning import MpcConfig
 from companion.core.data import Array
 from companion.planning.axis_qp import make_axis_cost, make_axis_model, slopes_of
 from companion.planning.constraints import LEVEL_SLACKS, VERTICAL_SLACKS, level_rows, vertical_rows
-from companion.planning.envelope import DIRECTIONS, INSCRIBED, braked, level_bounds, vertical_bounds
+from companion.planning.envelope import (
+    DIRECTIONS,
+    INSCRIBED,
+    LEFT_MIN_SHARE,
+    braked,
+    level_bounds,
+    push_along,
+    pushes_left,
+    vertical_bounds,
+)
 
 CONFIG = MpcConfig()
 MODEL = make_axis_model(np.array(CONFIG.moves_s), CONFIG.node_spacing_max_s)
 NODES, MOVES, ENDS = len(MODEL.node_s), len(MODEL.move_s), MODEL.end_node[1:] - 1
-LEVEL, NORMS = level_rows(MODEL), (3.0, 2.0, 4.0)
+LEVEL, NORMS, ANY = level_rows(MODEL), (3.0, 2.0, 4.0), (np.inf, 0.0, 0.0)
 LEAD_S = 0.8
 
 
@@ -44,7 +53,7 @@ def test_level_rows_keep_the_norms_and_forbid_nothing_well_inside_them() -> None
     for _ in range(400):
         state = np.vstack([rng.uniform(-5.0, 5.0, 3), rng.uniform(-1.5, 1.5, 3), rng.uniform(-1.0, 1.0, 3)])
         jerk = rng.uniform(-2.6, 2.6, (2, MOVES))
-        bounds = written(level_bounds, len(LEVEL), state, NORMS, MODEL.end_s)
+        bounds = written(level_bounds, len(LEVEL), state, NORMS, ANY, MODEL.end_s)
         kept = within(LEVEL @ np.append(jerk, np.zeros(LEVEL_SLACKS)), bounds)
         shares = [norm.max() / limit for norm, limit in zip(norms_of(state, jerk), NORMS, strict=True)]
         verdicts.append(kept)
@@ -56,12 +65,27 @@ def test_level_rows_keep_the_norms_and_forbid_nothing_well_inside_them() -> None
     assert 40 < sum(verdicts) < 360
 
 
+@pytest.mark.parametrize("holds_rad", np.linspace(0.0, 2.0 * np.pi, 7))
+def test_acceleration_and_what_holds_against_the_air_are_within_the_thrust_in_each_direction(holds_rad: float) -> None:
+    """Up to the polygon's corners, and to the least that is left in any direction."""
+    holds, most = 1.4 * np.array([np.cos(holds_rad), np.sin(holds_rad)]), 2.3
+    left = pushes_left(2.0, (most, *holds.tolist()))
+    for way in np.linspace(0.0, 2.0 * np.pi, 60):
+        along = np.array([np.cos(way), np.sin(way)])
+        push = push_along(left, *along.tolist())
+        thrust = float(np.hypot(*(push * along + holds)))
+        assert thrust <= most + 1e-9
+        assert push > INSCRIBED * 2.0 - 1e-9 or thrust > INSCRIBED * most - 0.05 * most
+    still = push_along(pushes_left(2.0, (1.0, *(5.0 * holds).tolist())), *(holds / 1.4).tolist())
+    assert still == pytest.approx(LEFT_MIN_SHARE, rel=0.02)
+
+
 @pytest.mark.parametrize("turn", range(4))
 def test_an_axis_may_use_the_whole_of_each_norm(turn: int) -> None:
     direction = np.array([(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)][turn])
     state, jerk = np.zeros((3, 3)), np.zeros((2, MOVES))
     state[1, :2], state[2, :2], jerk[:, 0] = 0.99 * NORMS[0] * direction, 0.0, 0.999 * NORMS[2] * direction
-    bounds = written(level_bounds, len(LEVEL), state, NORMS, MODEL.end_s)
+    bounds = written(level_bounds, len(LEVEL), state, NORMS, ANY, MODEL.end_s)
     jerk[:, 1] = -jerk[:, 0] * MODEL.move_s[0] / MODEL.move_s[1]
     assert within(LEVEL @ np.append(jerk, np.zeros(LEVEL_SLACKS)), bounds)
 
@@ -73,7 +97,7 @@ def test_a_state_that_breaks_its_norms_can_keep_the_widened_bounds(seed: int) ->
     way = np.exp(1j * rng.uniform(0.0, 2.0 * np.pi))
     state = np.zeros((3, 3))
     state[1, :2] = rng.uniform(1.1, 2.0) * NORMS[0] * np.array([way.real, way.imag])
-    bounds = written(level_bounds, len(LEVEL), state, NORMS, MODEL.end_s)
+    bounds = written(level_bounds, len(LEVEL), state, NORMS, ANY, MODEL.end_s)
     left = braked(state, 0.98 * INSCRIBED * NORMS[1], 0.98 * INSCRIBED * NORMS[2], MODEL.end_s)
     gained = left - state[1, :2]
     normals = np.array([(np.cos(k * np.pi / DIRECTIONS), np.sin(k * np.pi / DIRECTIONS)) for k in range(DIRECTIONS)])
@@ -113,7 +137,7 @@ def test_kernels_are_their_python() -> None:
         state = size * rng.standard_normal((3, 3))
         floor = (rng.standard_normal(NODES), LEAD_S, (1.5, 3.0, 4.0, 9.0), MODEL.node_s, MODEL.end_s)
         for kernel, count, arguments in (
-            (level_bounds, len(LEVEL), (state, NORMS, MODEL.end_s)),
+            (level_bounds, len(LEVEL), (state, NORMS, ANY, MODEL.end_s)),
             (vertical_bounds, len(vertical_rows(MODEL, LEAD_S)), (np.ascontiguousarray(state[:, 2]), *floor)),
         ):
             compiled, plain = written(kernel, count, *arguments), written(kernel.py_func, count, *arguments)

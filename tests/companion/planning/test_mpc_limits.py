@@ -3,6 +3,7 @@ import pytest
 
 from companion.config.planning import MpcConfig
 from companion.core.data import Array, FlightLimits
+from companion.planning.guidance import Leaning, ReferenceState
 from companion.planning.mpc import Mpc
 from link.records import replace
 from tests.companion.planning.cases import LIMITS, Motion, circle, fly, norm, state_at, state_on, straight
@@ -125,3 +126,18 @@ def test_a_bend_that_needs_more_than_the_limit_is_cut_by_no_more_than_its_excess
     assert excess > 0.2
     assert norm(flight.error).max() < excess * lasts_s**2 / 8.0 + 0.1
     assert norm(flight.error)[-1] < 0.05
+
+
+def test_a_circle_is_flown_on_which_drag_and_the_turn_together_take_nearly_all_of_the_tilt() -> None:
+    """Along the velocity drag leaves next to nothing of the tilt, across it three quarters, which the turn needs."""
+    most_m_s2, drag_hz, motion = 4.8, 0.5, circle(20.0, 7.2)
+
+    def leaning(state: ReferenceState) -> Leaning:
+        held = drag_hz * state.velocity_enu_m_s[:2]
+        return Leaning(path_max_m_s2=LIMITS.acceleration_max_m_s2, most_m_s2=most_m_s2, holds_enu_m_s2=held)
+
+    flight = fly(MPC, motion, state_at((17.0, -3.0, 3.0), (0.0, 5.0, 0.0)), 25.0, leaning=leaning)
+    thrust = norm(flight.acceleration + drag_hz * flight.velocity)
+    assert thrust.max() <= 1.01 * most_m_s2  # the drag within a block is that at its beginning
+    assert norm(flight.error)[-1] < 0.05
+    assert thrust[-1] > 0.92 * most_m_s2

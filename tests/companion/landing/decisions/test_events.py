@@ -79,6 +79,18 @@ def test_time_limit_is_kept(phase: Phase, limit_s: float) -> None:
     assert late[0] is Event.TIME_LIMIT
 
 
+@pytest.mark.parametrize("phase", [Phase.CHASE, Phase.ALIGN, Phase.DESCEND])
+def test_a_drone_that_may_not_lean_as_the_turn_takes_says_so(phase: Phase) -> None:
+    limits = replace(CONFIG.limits.flight_limits(), tilt_acceleration_m_s2=4.81)
+    late = progress(phase, 61.0)
+    for takes_m_s2, tells in ((4.9, phase is not Phase.DESCEND), (4.3, False)):
+        facts = replace(changed(situation(HIGH_M, 0.3), takes_m_s2=takes_m_s2), limits=limits)
+        decision = decided(late, facts, {})
+        assert decision is not None
+        assert decision[0] is Event.TIME_LIMIT
+        assert (decision[1].reason is Reason.TILT_TOO_SMALL) is tells
+
+
 def test_time_limit_does_not_end_a_landing_that_is_committed() -> None:
     late = progress(Phase.DESCEND, CONFIG.descent.time_limit_s + 1.0)
     low_m, high_m = 0.5 * CONFIG.descent.commit_height_m, 1.1 * CONFIG.descent.commit_height_m

@@ -46,7 +46,7 @@ def _left_m_s2(needed: Array, holds_enu_m_s2: Array, limits: FlightLimits) -> fl
         floor_enu_m=still[:, 2],
         dt_s=0.02,
     )
-    return limit_tilt(request, holds_enu_m_s2).acceleration_max_m_s2
+    return limit_tilt(request, holds_enu_m_s2).limits.acceleration_max_m_s2
 
 
 @given(tilt_m_s2=thrusts, share=shares, to_rad=sides, air_rad=sides)
