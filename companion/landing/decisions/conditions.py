@@ -37,6 +37,7 @@ class Condition:
         cause: what is told of it, where that takes more than the reason.
         is_outage: it passes, and an approach that it breaks off goes on after it.
         anew_max: how often in one approach it leads to aligning or chasing again; then it is unsafe.
+        goes_on: whether it goes on, by what has held so far, where it is not true for a moment; None: it never does.
     """
 
     reason: Reason
@@ -46,6 +47,7 @@ class Condition:
     cause: Callable[[Situation, CompanionConfig], Cause] | None = None
     is_outage: bool = False
     anew_max: Callable[[CompanionConfig], int] | None = None
+    goes_on: Callable[[Held, Situation, CompanionConfig], bool] | None = None
 
 
 def holds(condition: Condition, held: Held, s: Situation, config: CompanionConfig) -> bool:

@@ -15,6 +15,7 @@ from companion.landing.decisions.conditions import (
     TOUCHED_BY_DISPUTE,
     Condition,
     has_lost_heading,
+    holds,
     is_above_commitment,
     is_fix_old,
 )
@@ -49,10 +50,18 @@ def _is_far_off(s: Situation, c: CompanionConfig) -> bool:
     return s.approach.distance_m > 2.0 * c.descent.alignment.begin_distance_m
 
 
-def _stands_nearby(s: Situation, c: CompanionConfig) -> bool:
+def _is_nearby(s: Situation, c: CompanionConfig) -> bool:
     if s.drone is None or s.pad is None or is_pad_unplaced(s, c) or is_fix_old(s, c) or is_too_low(s, c):
         return False
-    return vehicle_stands(s, c.chase) and distance_m(s.drone, s.pad) < c.chase.passing_distance_m
+    return distance_m(s.drone, s.pad) < c.chase.passing_distance_m
+
+
+def _stands_nearby(s: Situation, c: CompanionConfig) -> bool:
+    return _is_nearby(s, c) and vehicle_stands(s, c.chase)
+
+
+def _still_stands(held: Held, s: Situation, c: CompanionConfig) -> bool:
+    return _is_nearby(s, c) and not holds(DRIVES, held, s, c)
 
 
 def _drives(s: Situation, c: CompanionConfig) -> bool:
@@ -99,13 +108,22 @@ NOT_SEEN = Condition(
     anew_max=lambda c: c.descent.unseen.anew_max,
 )
 
+DRIVES = Condition(
+    reason=Reason.VEHICLE_DRIVES, phases=_WAITING, is_true=_drives, hold_s=lambda _, c: c.chase.driving_hold_s
+)
+"""Without this no vehicle is taken to pass."""
+
 VEHICLE_STANDS = Condition(
     reason=Reason.VEHICLE_STANDS,
     phases=_WAITING,
     is_true=_stands_nearby,
     hold_s=lambda _, c: c.chase.parked_wait_s,
+    goes_on=_still_stands,
 )
-"""A vehicle that stands may be about to depart, so it is landed on only after it has stood for a while."""
+"""A vehicle that stands may be about to depart, so it is landed on only after it has stood for a while.
+
+What is too short to be driving ends no standing: one that creeps about as fast as the limit would do neither for ever.
+"""
 
 ALIGNED = Condition(reason=Reason.ALIGNED, phases=_ALIGNMENT, is_true=_is_aligned)
 
@@ -123,21 +141,20 @@ ENTRIES = (
 )
 """What leads to another phase of the approach."""
 
-DRIVES = Condition(
-    reason=Reason.VEHICLE_DRIVES, phases=_WAITING, is_true=_drives, hold_s=lambda _, c: c.chase.driving_hold_s
-)
-"""Without this no vehicle is taken to pass."""
-
 
 def update_held(
     held: Held, phase: Phase, s: Situation, config: CompanionConfig, *, others: tuple[Condition, ...] = ()
 ) -> Held:
-    """Return since when each condition of this phase has been true."""
+    """Return since when each condition of this phase has been true, or has gone on."""
     return {
         one.reason: held.get(one.reason, s.monotonic_ns)
         for one in _conditions_in(phase, others)
-        if one.is_true(s, config)
+        if one.is_true(s, config) or _goes_on(one, held, s, config)
     }
+
+
+def _goes_on(one: Condition, held: Held, s: Situation, config: CompanionConfig) -> bool:
+    return one.goes_on is not None and one.reason in held and one.goes_on(held, s, config)
 
 
 @cache

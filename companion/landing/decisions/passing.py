@@ -60,7 +60,7 @@ def why_not_chased(held: Held, s: Situation, config: CompanionConfig) -> Cause |
     if is_fix_old(s, config):
         return Cause(Reason.VEHICLE_DATA_OLD)
     nearest_m = config.chase.passing_distance_m
-    if vehicle_stands(s, config.chase):
+    if Reason.VEHICLE_STANDS in held or vehicle_stands(s, config.chase):
         away_m = distance_m(s.drone, s.pad)
         if away_m >= nearest_m:
             return Cause(Reason.VEHICLE_STANDS_FAR, (away_m, nearest_m))
