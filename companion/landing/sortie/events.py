@@ -64,6 +64,7 @@ OWN_LOST = (
 """Nobody knows where the drone is."""
 _OWN_LOST_REASONS = frozenset(condition.reason for condition in OWN_LOST)
 _VEHICLE_UNHEARD = frozenset({Reason.VEHICLE_DATA_OLD, Reason.VEHICLE_LINK_LOST})
+_UNHEARD_AFTER_CLIMB = frozenset({Reason.NO_VEHICLE_DATA, Reason.HEARD_WITH_BREAKS})
 
 NOT_FOLLOWED = Condition(
     reason=Reason.SETPOINT_NOT_FOLLOWED,
@@ -216,18 +217,21 @@ def _turn_home(sortie: SortieMemory, progress: Progress, s: Situation, config: C
 def _go_on(sortie: SortieMemory, progress: Progress, s: Situation, config: CompanionConfig) -> Decision | None:
     """Return to what an outage has broken off, once drone and vehicle are heard again.
 
-    The vehicle's alone breaks off a lift-off; from beside the vehicle, or on its way home, the drone looks for it.
+    The vehicle's alone breaks off a lift-off or a landing; from beside the vehicle, or on its way home, the drone looks
+    for it.
     """
-    is_outage = progress.cause.reason in _OWN_LOST_REASONS or _is_lift_off_over(sortie, progress, s, config)
+    is_outage = progress.cause.reason in _OWN_LOST_REASONS or _is_vehicle_back(sortie, progress, s, config)
     if not (is_outage and progress.may_retry and s.autopilot.in_control and holds(HEARD, progress.held, s, config)):
         return None
     return (Event.FOLLOW if sortie.follows else Event.RETURN), Cause(Reason.HEARD_AGAIN)
 
 
-def _is_lift_off_over(sortie: SortieMemory, progress: Progress, s: Situation, config: CompanionConfig) -> bool:
-    """Return whether a vehicle that was not heard broke off a lift-off, and can be followed now."""
-    was_lifting = sortie.follows and sortie.station is not None and progress.cause.reason in _VEHICLE_UNHEARD
-    return was_lifting and _is_found(s, config)
+def _is_vehicle_back(sortie: SortieMemory, progress: Progress, s: Situation, config: CompanionConfig) -> bool:
+    """Return whether a vehicle that was not heard broke off a lift-off, or a landing but the last, and is heard."""
+    reason, is_last = progress.cause.reason, progress.retries >= config.abort.retries_max
+    was_lifting = sortie.follows and sortie.station is not None and reason in _VEHICLE_UNHEARD
+    was_landing = not sortie.follows and reason in _UNHEARD_AFTER_CLIMB and not is_last
+    return (was_lifting or was_landing) and _is_found(s, config)
 
 
 def _stay_on_deck(progress: Progress, s: Situation, config: CompanionConfig) -> Decision | None:

@@ -151,6 +151,42 @@ def test_lift_off_that_a_silent_vehicle_broke_off_goes_on_to_the_station_once_th
     assert (flight.history[-3:], flight.reason) == ([Phase.ABORT, Phase.HOLD, Phase.FOLLOW], Reason.HEARD_AGAIN)
 
 
+def lands_without_data(phase: Phase, silent_s: float) -> Flight:
+    """A sortie whose vehicle has been silent from this phase of its landing on, and that holds because of it."""
+    flight = reached(Phase.FOLLOW)
+    flight.step(Command.RETURN)
+    flight.run_until(phase, limit_s=30.0)
+    flight.sends_fixes = False
+    flight.run_until(Phase.ABORT, limit_s=3.0)
+    flight.run(silent_s)
+    flight.sends_fixes = silent_s < CONFIG.abort.time_limit_s
+    flight.run_until(Phase.HOLD, limit_s=3.0)
+    return flight
+
+
+@pytest.mark.parametrize("phase", [Phase.CHASE, Phase.ALIGN, Phase.DESCEND])
+@pytest.mark.parametrize(
+    ("longer_s", "reason"), [(0.1, Reason.NO_VEHICLE_DATA), (-0.3, Reason.HEARD_WITH_BREAKS)], ids=["silent", "late"]
+)
+def test_landing_of_a_sortie_that_a_silent_vehicle_broke_off_goes_on_once_that_is_heard(
+    phase: Phase, longer_s: float, reason: Reason
+) -> None:
+    flight = lands_without_data(phase, CONFIG.abort.time_limit_s + longer_s)
+    assert flight.reason is reason
+    flight.sends_fixes = True
+    flight.run_until(Phase.RETURN, limit_s=5.0)
+    assert flight.reason is Reason.HEARD_AGAIN
+
+
+def test_last_landing_of_a_sortie_that_a_silent_vehicle_broke_off_is_the_last() -> None:
+    flight = lands_without_data(Phase.CHASE, CONFIG.abort.time_limit_s + 0.1)
+    progress = replace(flight.memory.progress, retries=CONFIG.abort.retries_max)
+    flight.memory = replace(flight.memory, progress=progress)
+    flight.sends_fixes = True
+    flight.run(5.0)
+    assert flight.phase is Phase.HOLD
+
+
 def test_way_home_goes_on_after_an_outage_of_the_autopilots_link() -> None:
     flight = silent(Phase.RETURN, Phase.HOLD)
     flight.run(2.0)
