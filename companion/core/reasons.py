@@ -50,7 +50,7 @@ class Reason(Enum):
     VEHICLE_FOUND = "vehicle is heard again"
     HOME_SOON = "the way home has to begin in {:.0f} s: command return"
     HOME_NOW = "comes home: the battery lasts {:.0f} s above its reserve, way and landing take {:.0f} s"
-    DECK_RESTLESS = "deck was not quiet within {:g} s"
+    DECK_RESTLESS = "deck was not quiet within {:g} s: it {}"
     LIFT_OFF_TOO_LONG = "lift-off took longer than {:g} s"
     RETURN_TOO_LONG = "did not come home within {:g} s: it holds"
 

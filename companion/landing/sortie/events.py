@@ -17,7 +17,7 @@ from companion.landing.decisions.conditions import (
 from companion.landing.decisions.entries import Decision
 from companion.landing.decisions.events import TOO_LONG, arming_refused
 from companion.landing.decisions.feasibility import EMPTY
-from companion.landing.sortie.over_vehicle import is_deck_quiet, shall_motors_turn
+from companion.landing.sortie.over_vehicle import is_deck_quiet, shall_motors_turn, tell_restless
 from companion.landing.sortie.riding import CARRIED_OFF, call_off, has_not_left_deck
 from companion.landing.sortie.way_home import warn_of_way_home, way_home_due
 from companion.landing.state.memory import ControlMemory, Progress
@@ -166,7 +166,7 @@ def _leave_deck(
         return Event.REFUSED, Cause(Reason.CONTROL_REFUSED)
     if in_phase_s > launch.time_limit_s:
         refused = None if sortie.quiet_since_ns is None else arming_refused(progress, control, s)
-        return refused or (Event.TIME_LIMIT, Cause(Reason.DECK_RESTLESS, (launch.time_limit_s,)))
+        return refused or (Event.TIME_LIMIT, tell_restless(s, launch))
     is_ready = view.armed and view.in_control and shall_motors_turn(sortie, s, launch) is True
     return (Event.DECK_QUIET, Cause(Reason.DECK_QUIET)) if is_ready else None
 

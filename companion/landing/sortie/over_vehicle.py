@@ -7,8 +7,9 @@ import numpy as np
 from companion.config.companion import CompanionConfig
 from companion.config.sortie import LaunchConfig
 from companion.core.data import Array, FlightLimits
+from companion.core.reasons import Cause, Reason
 from companion.planning.guidance import ReferenceState, Target
-from companion.situation.situation import Situation
+from companion.situation.situation import Drone, Situation
 from companion.sortie.memory import SortieMemory
 from companion.sortie.station import KeepOut, closing_speed_m_s, turn_rates_rad_s, turned
 from companion.vehicle.pad import PadPath
@@ -130,14 +131,35 @@ def floor_beside(pad: PadPath, keep_out: KeepOut, s: Situation) -> Array:
     return np.asarray(pad.position_enu_m[:, 2] + s.feet_offset_m + min(keep_out.lowest_m, keep_out.over_m) - _BELOW_M)
 
 
+def _deck_motions(drone: Drone, pad: PadPath, config: LaunchConfig) -> tuple[tuple[str, float, float], ...]:
+    """Return what is told of each motion that a quiet deck has little of, how much it is and how much it may be."""
+    climb_m_s = abs(float(drone.velocity_enu_m_s[2]) - _road_climb_m_s(pad))
+    changes_m_s2 = math.hypot(*pad.acceleration_enu_m_s2[0, :2].tolist())
+    return (
+        ("leans by {:.2f} rad, quiet_tilt_max_rad is {:g}", math.asin(min(drone.lean, 1.0)), config.quiet_tilt_max_rad),
+        ("rises or sinks at {:.1f} m/s, quiet_climb_max_m_s is {:g}", climb_m_s, config.quiet_climb_max_m_s),
+        (
+            "brakes, speeds up or turns with {:.1f} m/s^2, quiet_acceleration_max_m_s2 is {:g}",
+            changes_m_s2,
+            config.quiet_acceleration_max_m_s2,
+        ),
+    )
+
+
 def is_deck_quiet(s: Situation, config: LaunchConfig) -> bool:
     """Return whether the deck is level, neither rises nor sinks, and the vehicle drives evenly."""
     if s.drone is None or s.pad is None:
         return False
-    climb_m_s = abs(float(s.drone.velocity_enu_m_s[2]) - _road_climb_m_s(s.pad))
-    changes_m_s2 = math.hypot(*s.pad.acceleration_enu_m_s2[0, :2].tolist())
-    is_level = s.drone.lean <= math.sin(config.quiet_tilt_max_rad)
-    return is_level and climb_m_s <= config.quiet_climb_max_m_s and changes_m_s2 <= config.quiet_acceleration_max_m_s2
+    return all(value <= most for _, value, most in _deck_motions(s.drone, s.pad, config))
+
+
+def tell_restless(s: Situation, config: LaunchConfig) -> Cause:
+    """Return that the deck was never quiet for long enough, and what it does now that a quiet one does not."""
+    does = "is quiet for a moment only"
+    if s.drone is not None and s.pad is not None:
+        motions = _deck_motions(s.drone, s.pad, config)
+        does = next((told.format(value, most) for told, value, most in motions if value > most), does)
+    return Cause(Reason.DECK_RESTLESS, (config.time_limit_s, does))
 
 
 def shall_motors_turn(sortie: SortieMemory, s: Situation, config: LaunchConfig) -> bool | None:

@@ -10,7 +10,7 @@ import pytest
 from companion.config.integrity import ReceiverFrames
 from companion.core.data import Array, Measurement, Quantity
 from companion.core.reasons import Cause, Reason, sentence
-from companion.landing.sortie.over_vehicle import is_deck_quiet, stands_on_deck
+from companion.landing.sortie.over_vehicle import is_deck_quiet, stands_on_deck, tell_restless
 from companion.situation.phases import Phase
 from companion.situation.situation import Situation
 from link.messages import Command, Vector3
@@ -150,6 +150,29 @@ def test_no_lift_off_begins_while_the_motors_are_being_stopped() -> None:
     wait(flight, CONFIG.sortie.launch.idle_max_s + 0.1, tilt_rad=0.2)
     wait(flight, 3.0)
     assert (flight.view.armed, flight.phase) == (True, Phase.ON_DECK)
+
+
+@pytest.mark.parametrize(
+    ("lean_rad", "climb_m_s", "acceleration_m_s2", "told"),
+    [
+        (0.119, 0.0, 0.0, "leans by 0.12 rad, quiet_tilt_max_rad is 0.09"),
+        (0.0, -0.54, 0.0, "rises or sinks at 0.5 m/s"),
+        (0.0, 0.0, 3.2, "turns with 3.2 m/s^2"),
+        (0.0, 0.0, 0.0, "for a moment only"),
+    ],
+)
+def test_launch_that_is_given_up_says_what_the_deck_does(
+    lean_rad: float, climb_m_s: float, acceleration_m_s2: float, told: str
+) -> None:
+    facts = situation(0.0)
+    assert facts.drone is not None
+    assert facts.pad is not None
+    velocity = facts.pad.velocity_enu_m_s[0] + np.array([0.0, 0.0, climb_m_s])
+    acceleration = facts.pad.acceleration_enu_m_s2 + np.array([0.0, acceleration_m_s2, 0.0])
+    drone = replace(facts.drone, lean=math.sin(lean_rad), velocity_enu_m_s=velocity)
+    restless = replace(facts, drone=drone, pad=replace(facts.pad, acceleration_enu_m_s2=acceleration))
+    assert is_deck_quiet(restless, CONFIG.sortie.launch) is ("moment" in told)
+    assert told in sentence(tell_restless(restless, CONFIG.sortie.launch))
 
 
 SOON_GIVEN_UP = configured({"sortie": {"launch": {"time_limit_s": 8.0}}})
