@@ -109,6 +109,7 @@ class Forecast(Struct, frozen=True, kw_only=True, eq=False):
         is_height_told: lately a sighting or a range told how high it is for the drone, whose own height may be wrong.
         swing: (3, 2) angular frequency, rad/s, and damping of heave, roll and pitch; None as `tilt_rad`.
         climb_std_m_s: (n,) standard deviation of the pad's velocity upwards; None where it is not estimated.
+        turns_on_spot: the heading is left out for it turns too fast on the spot for a forecast.
     """
 
     t_ns: int
@@ -128,6 +129,7 @@ class Forecast(Struct, frozen=True, kw_only=True, eq=False):
     is_height_told: bool = False
     swing: Array | None = None
     climb_std_m_s: Array | None = None
+    turns_on_spot: bool = False
 
 
 class OwnState(Struct, frozen=True, kw_only=True):

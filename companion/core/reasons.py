@@ -118,6 +118,7 @@ class Reason(Enum):
     # Where on the vehicle the pad is, is not known.
     PAD_NOT_DESCRIBED = "the vehicle has not described its pad"
     HEADING_UNKNOWN = "vehicle heading unknown"
+    TURNS_ON_SPOT = "vehicle turns on the spot: no landing until it has turned"
     HEADING_LOST = "vehicle heading too vague for its pad"
     HEADING_OFF_COURSE = "vehicle heading is {:.0f} degrees off its course"
 

@@ -1,7 +1,6 @@
 """The default estimator: interacting turning models with the offset between the two receivers' frames.
 
-State, motion and units are in `imm_kernels`, noise in `imm_noise`, what sensors read in `imm_sensors`, and how the
-models interact in `imm_mixing`.
+State, motion and units are in `imm_kernels`, noise in `imm_noise`, sensors in `imm_sensors`, mixing in `imm_mixing`.
 The vehicle's fixes are in the frame of its own receiver and dated by its own clock; sightings of the pad are in the
 drone's. The difference of the frames is three states with a slow random walk, that of the clocks is one, so that the
 estimate is right for the drone, and stays right when the sightings end. A vehicle that tells nothing is placed by
@@ -205,6 +204,7 @@ class ImmModel:
             frame_offset_enu_m=(weights @ means)[OFFSET[:2]],
             frame_offset_std_m=std_of(float((weights @ covariances[:, OFFSET[:2], OFFSET[:2]]).max())),
             is_height_told=state.height_age_s < self.config.receivers.own_height_time_s,
+            turns_on_spot=spins(state),
         )
 
     def _after_silence(self, state: ImmState) -> Modes:

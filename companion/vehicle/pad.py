@@ -16,6 +16,7 @@ from link.messages import PadGeometry, Vector3
 
 KNOWN_SHARE = 1.0 / 3.0  # of half of the pad's width, the standard deviation of one that has to be seen: 0.25 m
 HEADING_UNKNOWN, NOT_DESCRIBED = Cause(Reason.HEADING_UNKNOWN), Cause(Reason.PAD_NOT_DESCRIBED)
+TURNS_ON_SPOT = Cause(Reason.TURNS_ON_SPOT)
 
 
 class FrameOffset(Struct, frozen=True, kw_only=True):
@@ -150,7 +151,7 @@ def pad_path(
         ),
         grade=0.0 if forecast.grade is None else float(forecast.grade[0]),
         swing=deck,
-        unplaced=NOT_DESCRIBED if pad is None else HEADING_UNKNOWN if _is_about(forecast, pad) else None,
+        unplaced=_why_unplaced(forecast, pad),
         frame_offset=_frame_offset(forecast, is_confirmed=is_confirmed, higher_m=higher_m),
     )
 
@@ -206,6 +207,15 @@ def _yaw_rate_rad_s(forecast: Forecast) -> Array | None:
     if forecast.yaw_rad is None or len(forecast.offset_s) < 2:
         return None
     return yaw_rate(forecast.yaw_rad, forecast.offset_s)
+
+
+def _why_unplaced(forecast: Forecast, pad: PadGeometry | None) -> Cause | None:
+    """Return why nobody knows where the pad is, None where it is known."""
+    if pad is None:
+        return NOT_DESCRIBED
+    if not _is_about(forecast, pad):
+        return None
+    return TURNS_ON_SPOT if forecast.turns_on_spot else HEADING_UNKNOWN
 
 
 def _is_about(forecast: Forecast, pad: PadGeometry) -> bool:

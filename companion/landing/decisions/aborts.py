@@ -23,6 +23,7 @@ from companion.landing.decisions.conditions import (
     is_sunk,
     is_vehicle_taken,
     tell_taken,
+    turns_on_spot,
 )
 from companion.landing.decisions.standing import has_touched, tell_blown_off, would_blow_off
 from companion.landing.steering.losing import LOST_FOR_S
@@ -70,7 +71,7 @@ def _is_place_lost(s: Situation, c: CompanionConfig) -> bool:
 
 
 def _tell_place_lost(s: Situation, c: CompanionConfig) -> Cause:
-    is_vague = is_heading_to_be_shown(s, c)
+    is_vague = is_heading_to_be_shown(s, c) and not turns_on_spot(s)
     return Cause(Reason.HEADING_LOST) if is_vague else why_unplaced(s) or Cause(Reason.HEADING_UNKNOWN)
 
 

@@ -22,7 +22,7 @@ from companion.landing.decisions.contact_trial import (
 from companion.landing.state.memory import Held
 from companion.situation.phases import LANDING_PHASES, Phase
 from companion.situation.situation import Situation, vehicle_stands
-from companion.vehicle.pad import HEADING_UNKNOWN
+from companion.vehicle.pad import HEADING_UNKNOWN, TURNS_ON_SPOT
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -82,8 +82,15 @@ def is_low_above_pad(s: Situation, c: CompanionConfig) -> bool:
     return s.approach is not None and s.approach.height_m <= c.descent.wait.height_m
 
 
+def turns_on_spot(s: Situation) -> bool:
+    """Return whether the pad goes round an antenna that turns: it is known again once the vehicle has turned."""
+    return s.pad is not None and s.pad.unplaced == TURNS_ON_SPOT
+
+
 def is_heading_to_be_shown(s: Situation, c: CompanionConfig) -> bool:
-    """Return whether nothing but a heading that has become vague is missed, which a vehicle shows while it drives."""
+    """Return whether only a heading is missed that a vehicle shows: a vague one as it drives, or that of a turn."""
+    if turns_on_spot(s):
+        return True
     if s.pad is None or s.pad.yaw_rad is None or s.pad.unplaced != HEADING_UNKNOWN:
         return False
     return not vehicle_stands(s, c.chase)

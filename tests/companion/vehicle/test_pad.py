@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from companion.core.data import Array, Forecast
 from companion.vehicle.lever import tilted_lever, turned_lever, yaw_rate
-from companion.vehicle.pad import HEADING_UNKNOWN, NOT_DESCRIBED, pad_path
+from companion.vehicle.pad import HEADING_UNKNOWN, NOT_DESCRIBED, TURNS_ON_SPOT, pad_path
 from companion.vehicle.shake import tilted_deck
 from link.frames.rotations import quaternion_from_roll_pitch_yaw, quaternion_from_yaw, rotate
 from link.messages import PadGeometry, Vector3
@@ -114,6 +114,12 @@ def test_unknown_heading_leaves_a_horizontal_lever_arm_out_and_says_so() -> None
     path = pad_path(forecast, _pad((0.4, 0.0, 0.7)))
     assert path.unplaced == HEADING_UNKNOWN
     np.testing.assert_allclose(path.position_enu_m - forecast.position_enu_m, np.tile([0.0, 0.0, 0.7], (41, 1)))
+
+
+def test_pad_beside_the_antenna_of_a_vehicle_that_turns_on_the_spot_is_told_as_that() -> None:
+    forecast = replace(_forecast(None), turns_on_spot=True)
+    assert pad_path(forecast, _pad((0.4, 0.0, 0.7))).unplaced == TURNS_ON_SPOT
+    assert pad_path(forecast, _pad((0.0, 0.0, 0.7))).unplaced is None
 
 
 def test_vertical_lever_arm_needs_no_heading() -> None:

@@ -80,7 +80,7 @@ def test_there_is_no_heading_to_land_by_while_the_vehicle_turns(t_s: float, *, i
     done = ride(chosen, turning_on_the_spot(), TOLD, 0, from_s=t_s - 0.1, until_s=t_s)
     forecast = chosen.forecast(done.memory, now_ns(t_s), np.array([0.0]))
     assert forecast is not None
-    assert (forecast.yaw_rad is not None) is is_known
+    assert (forecast.yaw_rad is not None, forecast.turns_on_spot) == (is_known, not is_known)
 
 
 def spin_of(memory: EstimatorMemory | None) -> float:

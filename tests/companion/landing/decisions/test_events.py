@@ -11,7 +11,7 @@ from companion.landing.decisions.aborts import ABORTS
 from companion.landing.decisions.conditions import Condition
 from companion.landing.decisions.entries import ENTRIES, update_held
 from companion.situation.phases import Event, Phase
-from companion.vehicle.pad import NOT_DESCRIBED, PadPath
+from companion.vehicle.pad import NOT_DESCRIBED, TURNS_ON_SPOT, PadPath
 from companion.vehicle.pad_reach import cone_radius_m
 from link.records import replace
 from tests.companion.facts import (
@@ -175,6 +175,24 @@ def test_climb_above_a_vague_heading_ends_in_a_hold_only_where_it_was_waited_for
 ) -> None:
     climb = replace(progress(Phase.ABORT), cause=Cause(broke_off))
     assert decided(climb, situation(CONFIG.abort.height_m, pad=VAGUE), LONG_HEARD) == expected
+
+
+TURNS = replace(pad_at((0.0, 0.0, 0.0)), yaw_rad=None, unplaced=TURNS_ON_SPOT)
+TURNED_AWAY = Cause(Reason.TURNS_ON_SPOT)
+
+
+def test_vehicle_that_turns_on_the_spot_is_waited_for_as_one_that_loses_its_heading_is() -> None:
+    """Once it stands again, all is known."""
+    commit_m = CONFIG.descent.commit_height_m
+    high, low = situation(commit_m + 0.1, pad=TURNS), situation(commit_m - 0.01, pad=TURNS)
+    aligns = (Event.OUT_OF_ALIGNMENT, Cause(Reason.HEADING_LOST))
+    assert first_decision(Phase.DESCEND, high, 1.0)[0] == aligns
+    assert first_decision(Phase.DESCEND, low, 1.0)[0] == (Event.UNSAFE, TURNED_AWAY)
+    climb = replace(progress(Phase.ABORT), cause=TURNED_AWAY)
+    again = (Event.CLEAR, Cause(Reason.RETRY, (1, CONFIG.abort.retries_max)))
+    assert decided(climb, situation(CONFIG.abort.height_m, pad=TURNS), LONG_HEARD) == again
+    late = decided(progress(Phase.ALIGN, CONFIG.descent.alignment.time_limit_s + 0.01), situation(pad=TURNS), {})
+    assert late == (Event.TIME_LIMIT, TURNED_AWAY)
 
 
 def test_bounce_is_seen_above_its_height_only() -> None:
