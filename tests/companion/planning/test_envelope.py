@@ -76,6 +76,7 @@ def test_acceleration_and_what_holds_against_the_air_are_within_the_thrust_in_ea
         thrust = float(np.hypot(*(push * along + holds)))
         assert thrust <= most + 1e-9
         assert push > INSCRIBED * 2.0 - 1e-9 or thrust > INSCRIBED * most - 0.05 * most
+        assert push <= 2.0 + 1e-9
     still = push_along(pushes_left(2.0, (1.0, *(5.0 * holds).tolist())), *(holds / 1.4).tolist())
     assert still == pytest.approx(LEFT_MIN_SHARE, rel=0.02)
 
@@ -138,6 +139,7 @@ def test_kernels_are_their_python() -> None:
         floor = (rng.standard_normal(NODES), LEAD_S, (1.5, 3.0, 4.0, 9.0), MODEL.node_s, MODEL.end_s)
         for kernel, count, arguments in (
             (level_bounds, len(LEVEL), (state, NORMS, ANY, MODEL.end_s)),
+            (level_bounds, len(LEVEL), (state, NORMS, (2.2, -0.9, 0.6), MODEL.end_s)),
             (vertical_bounds, len(vertical_rows(MODEL, LEAD_S)), (np.ascontiguousarray(state[:, 2]), *floor)),
         ):
             compiled, plain = written(kernel, count, *arguments), written(kernel.py_func, count, *arguments)
