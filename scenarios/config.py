@@ -12,7 +12,14 @@ from companion.config.companion import CompanionConfig
 from link.messages import PadGeometry
 from link.program.toml_config import Ascending, Coordinate, NotNegative, Positive, Range, StrictModel
 from scenarios.tracks.config import TrackConfig
-from sim_autopilot.runtime.config import DatumConfig, DroneConfig, Place, RangeEnd, RangeLimits
+from sim_autopilot.runtime.config import (
+    DatumConfig,
+    DroneConfig,
+    Place,
+    RangeEnd,
+    RangeLimits,
+    SuperstructureConfig,
+)
 
 Share = Annotated[float, Field(ge=0.0, le=1.0)]
 Angle = Annotated[float, Field(ge=-math.pi, le=math.pi)]
@@ -184,6 +191,7 @@ class VehicleConfig(StrictModel):
     pad_size_m: tuple[Positive, Positive] = (1.5, 1.5)  # MBZIRC 2017
     antenna_flu_m: tuple[Coordinate, Coordinate, Coordinate] = (-1.2, 0.5, 1.6)
     is_afloat: bool = False
+    superstructure: SuperstructureConfig | None = None  # a hangar; None: the body itself is in the wind
 
     @property
     def pad(self) -> PadGeometry:

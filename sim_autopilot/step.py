@@ -181,7 +181,7 @@ def _advance(memory: AutopilotMemory, inputs: AutopilotInputs, config: Autopilot
 def _on_its_road(deck: Deck, before: Deck | None) -> Deck:
     """Return the vehicle with the lowest that its road has led so far."""
     lowest_m = deck.lowest_m if before is None else before.lowest_m
-    return replace(deck, lowest_m=min(lowest_m, float(deck.position_enu_m[2])))
+    return replace(deck, lowest_m=min(lowest_m, deck.road_m))
 
 
 def _after_flight(memory: AutopilotMemory) -> AutopilotMemory:

@@ -61,8 +61,8 @@ def fly(scenario: Scenario, options: FlyOptions, progress: Progress) -> RunOutco
             ended = flight.run(transport, processes, progress)
         if options.record:
             _write_truth(placed, options, keys, flight.recording)
-    # There is no tier for a drone that came near and did not land.
-    rules = replace(rules_of(placed), report_rule=False, carries=options.ship_speed_m_s is not None)
+    # There is no tier for a drone that came near and did not land. The firmware's own wind knows no vehicle.
+    rules = replace(rules_of(placed), report_rule=False, obstacle=None, carries=options.ship_speed_m_s is not None)
     if operator is None:
         result = result_table(placed, options.seed, flight.recording, ended, rules)
     else:

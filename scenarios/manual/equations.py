@@ -53,7 +53,7 @@ SECTIONS: tuple[tuple[str, str, tuple[str, ...]], ...] = (
             "sim_autopilot.physics.step",
             "sim_autopilot.physics.contact",
             "sim_autopilot.physics.ground_effect",
-            "sim_autopilot.physics.wind",
+            "sim_autopilot.air.wind",
         ),
     ),
     (

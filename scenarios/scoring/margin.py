@@ -37,7 +37,7 @@ from scenarios.scoring import flight_faults as limits
 from scenarios.scoring.flight_faults import Flight, tilts_rad
 from scenarios.scoring.touch import Box, Touches
 from scenarios.scoring.touchdown import S1_LIMITS, Landing, ScoreRules, trims_rad
-from scenarios.scoring.truth_log import Array, TruthLog
+from scenarios.scoring.truth_log import Array, Indices, TruthLog
 
 LEAST = 1e-6
 """How far below zero an unsafe run is at least: what six digits still show."""
@@ -95,21 +95,22 @@ def _before_contact(log: TruthLog, touched: Touches, flight: Flight, takeoff: in
         return {}
     span = slice(first, last)
     touch_m = np.minimum(touched.height_m[span], touched.from_box_m[span]).min(axis=1)
-    within = np.min(list(_s1_left(log, span, rules).values()), axis=0)
-    return {
-        "distance to what is no pad": float(_distance_to_no_pad_m(touched, span, rules.box).min()) / _NEAR_M,
-        "S1 while near": float(np.maximum(touch_m / _NEAR_M, within).min()),
-    }
+    terms = {"distance to what is no pad": float(_distance_to_no_pad_m(touched, span, rules.box).min()) / _NEAR_M}
+    near = np.flatnonzero(touch_m < _NEAR_M)
+    if len(near):
+        within = np.min(list(_s1_left(log, first + near, rules).values()), axis=0)
+        terms["S1 while near"] = float(np.maximum(touch_m[near] / _NEAR_M, within).min())
+    return terms
 
 
-def _s1_left(log: TruthLog, span: slice, rules: ScoreRules) -> dict[str, Array]:
-    """Return, for each sample of `span`, what would be left to each limit of S1 in a contact."""
-    tilt_rad = tilts_rad(log.rotation_vb[span])
+def _s1_left(log: TruthLog, samples: Indices, rules: ScoreRules) -> dict[str, Array]:
+    """Return, for each of the samples, what would be left to each limit of S1 in a contact."""
+    position_m, velocity_m_s = log.position_v_m[samples], log.velocity_v_m_s[samples]
     measures = {
-        "horizontal_error_m": np.hypot(log.position_v_m[span, 0], log.position_v_m[span, 1]),
-        "relative_speed_m_s": np.hypot(log.velocity_v_m_s[span, 0], log.velocity_v_m_s[span, 1]),
-        "sink_rate_m_s": -log.velocity_v_m_s[span, 2],
-        "tilt_over_trim_rad": tilt_rad - trims_rad(log.velocity_enu_m_s[span], rules),
+        "horizontal_error_m": np.hypot(position_m[:, 0], position_m[:, 1]),
+        "relative_speed_m_s": np.hypot(velocity_m_s[:, 0], velocity_m_s[:, 1]),
+        "sink_rate_m_s": -velocity_m_s[:, 2],
+        "tilt_over_trim_rad": tilts_rad(log.rotation_vb[samples]) - trims_rad(log, samples, rules),
     }
     return {name: _left_share(values, name) for name, values in measures.items()}
 

@@ -24,6 +24,7 @@ class Box:
     roof_size_m: tuple[float, float]
     roof_height_m: float
     pad_size_m: tuple[float, float]
+    is_afloat: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -75,8 +76,9 @@ def touches(log: TruthLog, box: Box) -> Touches:
     """Return what the drone touches in every sample of `log`."""
     points_v_m = log.position_v_m[:, None, :] + CONTACT_POINTS_FLU_M @ np.swapaxes(log.rotation_vb, 1, 2)
     points_enu_m = log.position_enu_m[:, None, :] + CONTACT_POINTS_FLU_M @ np.swapaxes(log.rotation, 1, 2)
-    lowest_m = np.minimum.accumulate(log.vehicle_position_enu_m[:, 2])
-    places = np.column_stack([log.position_enu_m[:, :2], log.vehicle_position_enu_m, lowest_m]).tolist()
+    road_m = np.zeros(len(log.t_ns)) if box.is_afloat else log.vehicle_position_enu_m[:, 2]
+    vehicle_m, lowest_m = log.vehicle_position_enu_m[:, :2], np.minimum.accumulate(road_m)
+    places = np.column_stack([log.position_enu_m[:, :2], vehicle_m, road_m, lowest_m]).tolist()
     ground_height_m = points_enu_m[..., 2] - np.array([ground_height(*place) for place in places])[:, None]
     across_m = 0.5 * np.array(box.roof_size_m) - np.abs(points_v_m[..., :2])
     over = (across_m > 0.0).all(axis=2)

@@ -1,7 +1,8 @@
 """What a touchdown was like, measured on ground truth against the deck, and whether the drone stayed.
 
 Positions, speeds and tilt at contact are taken against the deck: horizontal is along it, sinking is across it.
-Trim is the tilt of steady flight at the contact's mean airspeed, atan(drag / weight).
+Trim is the tilt of steady flight in the mean air at the contact, atan(drag / weight). That air is the mean wind, and
+what the vehicle makes of it.
 """
 
 import math
@@ -10,12 +11,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from link.messages import Vector3
-from scenarios.config import Scenario
+from scenarios.config import Scenario, VehicleConfig
 from scenarios.scoring.flight_faults import motors_off_index
 from scenarios.scoring.touch import Box, Contact
-from scenarios.scoring.truth_log import Array, TruthLog
+from scenarios.scoring.truth_log import Array, Indices, TruthLog
+from sim_autopilot.air.airflow import Obstacle, body_of, flow_at
 from sim_autopilot.physics.airframe import GRAVITY_M_S2
-from sim_autopilot.runtime.physics import airframe_of
+from sim_autopilot.runtime.physics import airframe_of, superstructure_of
 
 _MOTORS_OFF_MAX_S = 2.0
 _STAYS_S = 2.0
@@ -34,6 +36,7 @@ class ScoreRules:
         drag_n_s_m: linear drag of the drone on airspeed, for the trim.
         drag_n_s2_m2: quadratic drag, for the trim.
         wind_mean_enu_m_s: mean wind, for the trim.
+        obstacle: what the vehicle puts into that wind, None for nothing.
         fence_radius_m: horizontal, about the origin of W.
         fence_drives_along: it is about the vehicle, which is a sortie's home wherever it drives.
         report_rule: S0 counts as a landing.
@@ -47,6 +50,7 @@ class ScoreRules:
     drag_n_s_m: float
     drag_n_s2_m2: float = 0.0
     wind_mean_enu_m_s: Vector3 = (0.0, 0.0, 0.0)
+    obstacle: Obstacle | None = None
     fence_radius_m: float = math.inf
     fence_drives_along: bool = False
     report_rule: bool = False
@@ -68,15 +72,23 @@ def rules_of(scenario: Scenario, *, wind_mean_enu_m_s: Vector3 = (0.0, 0.0, 0.0)
             roof_size_m=(vehicle.length_m, vehicle.width_m),
             roof_height_m=vehicle.roof_height_m,
             pad_size_m=vehicle.pad_size_m,
+            is_afloat=vehicle.is_afloat,
         ),
         waiting_point_enu_m=scenario.run.waiting_point_enu_m,
         mass_kg=airframe.mass_kg,
         drag_n_s_m=airframe.drag_n_s_m,
         drag_n_s2_m2=airframe.drag_n_s2_m2,
         wind_mean_enu_m_s=wind_mean_enu_m_s,
+        obstacle=_obstacle_of(vehicle),
         fence_radius_m=scenario.run.fence_radius_m,
         report_rule=vehicle.roof_height_m == 0.0,
     )
+
+
+def _obstacle_of(vehicle: VehicleConfig) -> Obstacle | None:
+    if vehicle.superstructure is not None:
+        return superstructure_of(vehicle.superstructure, vehicle.roof_height_m)
+    return body_of((vehicle.length_m, vehicle.width_m), vehicle.roof_height_m)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -126,11 +138,24 @@ def landing_of(log: TruthLog, contact: Contact, rules: ScoreRules) -> Landing:
     )
 
 
-def trims_rad(velocity_enu_m_s: Array, rules: ScoreRules) -> Array:
-    """Return the tilts (n,) of steady flight at velocities (n, 3) in W in the mean wind, atan(drag / weight)."""
-    airspeed_m_s = np.linalg.norm(velocity_enu_m_s[:, :2] - np.array(rules.wind_mean_enu_m_s[:2]), axis=1)
+def trims_rad(log: TruthLog, samples: Indices, rules: ScoreRules) -> Array:
+    """Return the tilts (n,) of steady flight at the velocities of n samples, in the mean air where the drone is."""
+    air_m_s = np.array([_air_enu_m_s(log, k, rules) for k in samples.tolist()]).reshape(-1, 3)
+    airspeed_m_s = np.linalg.norm((log.velocity_enu_m_s[samples] - air_m_s)[:, :2], axis=1)
     drag_n = (rules.drag_n_s_m + rules.drag_n_s2_m2 * airspeed_m_s) * airspeed_m_s
     return np.asarray(np.arctan(drag_n / (rules.mass_kg * GRAVITY_M_S2)))
+
+
+def _air_enu_m_s(log: TruthLog, k: int, rules: ScoreRules) -> Array:
+    """Return the mean air (3,), m/s in W, at sample `k`."""
+    wind = np.array(rules.wind_mean_enu_m_s)
+    if rules.obstacle is None:
+        return wind
+    rotation_vw = log.rotation_vb[k] @ log.rotation[k].T
+    along, across, _ = (rotation_vw @ (wind - log.vehicle_velocity_enu_m_s[k])).tolist()
+    x_m, y_m, z_m = log.position_v_m[k].tolist()
+    flow = flow_at(rules.obstacle, (x_m, y_m, z_m), (along, across))
+    return np.asarray(wind + rotation_vw.T @ np.array(flow.change_m_s))
 
 
 def _on_pad(position_v_m: Array, box: Box) -> bool:
@@ -144,7 +169,7 @@ def _touchdown(log: TruthLog, contact: Contact, rules: ScoreRules) -> Touchdown:
     """Return the first contact's measures; velocity and attitude are those just before it."""
     k = contact.before
     velocity_v_m_s = log.velocity_v_m_s[k]
-    trim_rad = float(trims_rad(log.velocity_enu_m_s[k : k + 1], rules)[0])
+    trim_rad = float(trims_rad(log, np.array([k]), rules)[0])
     tilt_rad = math.acos(min(1.0, max(-1.0, float(log.rotation_vb[k, 2, 2]))))
     return Touchdown(
         contact_t_ns=contact.t_ns,

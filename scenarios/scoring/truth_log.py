@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from link.messages import BodyTruth, RotorTruth
 
 Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -20,24 +21,26 @@ class TruthLog:
     """A run's truth at n instants.
 
     Attributes:
-        t_ns: (n,) int64, rising.
+        t_ns: (n,), rising.
         position_enu_m: (n, 3) p_WB.
         velocity_enu_m_s: (n, 3) v_WB.
         rotation: (n, 3, 3) R_WB.
         rate_rad_s: (n,) size of the drone's angular velocity.
         vehicle_position_enu_m: (n, 3) p_WV.
+        vehicle_velocity_enu_m_s: (n, 3) v_WV.
         rotation_vb: (n, 3, 3) R_VB.
         position_v_m: (n, 3) of B in V.
         velocity_v_m_s: (n, 3) its rate of change, that is, the velocity relative to the deck in V.
         rotor_speed_rad_s: (n, 4), None without rotor truth.
     """
 
-    t_ns: NDArray[np.int64]
+    t_ns: Indices
     position_enu_m: Array
     velocity_enu_m_s: Array
     rotation: Array
     rate_rad_s: Array
     vehicle_position_enu_m: Array
+    vehicle_velocity_enu_m_s: Array
     rotation_vb: Array
     position_v_m: Array
     velocity_v_m_s: Array
@@ -75,6 +78,7 @@ def truth_log(drone: Sequence[BodyTruth], vehicle: Sequence[BodyTruth], rotors: 
         rotation=body.rotation,
         rate_rad_s=np.linalg.norm(body.rate_body, axis=1),
         vehicle_position_enu_m=base.position,
+        vehicle_velocity_enu_m_s=_turn(base.rotation, base.velocity_body),
         rotation_vb=to_vehicle @ body.rotation,
         position_v_m=position_v_m,
         velocity_v_m_s=velocity_v_m_s,

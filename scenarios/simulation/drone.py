@@ -41,7 +41,13 @@ def sim_autopilot_config(scenario: Scenario, seed: Seed, *, instant: bool) -> Si
         wind=_wind(scenario, seed),
         own_state=_own_state(scenario, seed),
         range_finder=_range_finder(scenario.sensors.range_finder),
-        vehicle=VehicleConfig(length_m=body.length_m, width_m=body.width_m, roof_height_m=body.roof_height_m),
+        vehicle=VehicleConfig(
+            length_m=body.length_m,
+            width_m=body.width_m,
+            roof_height_m=body.roof_height_m,
+            is_afloat=body.is_afloat,
+            superstructure=body.superstructure,
+        ),
         parameters=scenario.system.parameters.get(scenario.firmware, {}),
     )
 

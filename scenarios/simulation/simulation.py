@@ -3,9 +3,6 @@
 `scenarios world` puts sockets around it, a lockstep run puts it beside a companion.
 """
 
-from math import dist
-
-import numpy as np
 from msgspec import Struct
 
 from link.messages import BodyTruth, RotorTruth
@@ -19,7 +16,7 @@ from scenarios.simulation.vehicle_node import VehicleNode
 from sim_autopilot.plant.snapshot import drone_truth, rotor_truth
 from sim_autopilot.runtime.build import autopilot_config
 from sim_autopilot.runtime.node import STEP_NS, AutopilotNode
-from sim_autopilot.runtime.physics import wind_model
+from sim_autopilot.runtime.physics import air_model
 
 __all__ = ["STEP_NS", "Simulation", "SimulationOutputs"]
 
@@ -73,8 +70,7 @@ class Simulation:
         range_finder = replace(config.range_finder, seed=part_seed(seed, "range finder"))
         self.autopilot = AutopilotNode(replace(config, own_state=own_state, range_finder=range_finder), start_ns)
         self._body = scenario.vehicle
-        self._wind = wind_model(settings, part_seed(seed, "turbulence"))
-        self._wind_enu_m_s = np.zeros(3)
+        self._air = air_model(settings, part_seed(seed, "turbulence"), part_seed(seed, "wake"))
         self._drone = drone_truth(self.autopilot.state)
 
     @property
@@ -92,9 +88,9 @@ class Simulation:
         state = self.vehicle.state
         if state is None:
             raise ValueError("the vehicle has made no step")
-        airspeed_m_s = dist(self.autopilot.state.velocity_enu_m_s.tolist(), self._wind_enu_m_s.tolist())
-        self._wind_enu_m_s = self._wind.advance(self.autopilot.step_ns * 1e-9, airspeed_m_s)
-        (mavlink,) = self.autopilot.step(vehicle_deck(state, self._body), self._wind_enu_m_s)
+        deck = vehicle_deck(state, self._body)
+        air_enu_m_s = self._air.advance(self.autopilot.step_ns * 1e-9, self.autopilot.state, deck)
+        (mavlink,) = self.autopilot.step(deck, air_enu_m_s)
         self._drone = drone_truth(self.autopilot.state)
         return SimulationOutputs(
             mavlink=mavlink,

@@ -233,4 +233,5 @@ def vehicle_deck(state: VehicleState, body: VehicleConfig) -> Deck:
         angular_velocity_enu_rad_s=np.array(rotate(state.orientation_wxyz, state.angular_velocity_flu_rad_s)),
         roof_size_m=(body.length_m, body.width_m),
         roof_height_m=body.roof_height_m,
+        is_afloat=body.is_afloat,
     )

@@ -55,6 +55,7 @@ class Deck(Struct, frozen=True, kw_only=True, eq=False):
         angular_velocity_enu_rad_s: (3,) in W.
         roof_size_m: length (x of V) and width (y of V) of the body.
         roof_height_m: of the roof above `position_enu_m`, along z of V; 0 is a pad on the road.
+        is_afloat: it is on the sea, and no road leads it up and down.
         lowest_m: height in W of the lowest road that it has been on.
     """
 
@@ -65,7 +66,13 @@ class Deck(Struct, frozen=True, kw_only=True, eq=False):
     angular_velocity_enu_rad_s: Array
     roof_size_m: tuple[float, float]
     roof_height_m: float
+    is_afloat: bool = False
     lowest_m: float = inf
+
+    @property
+    def road_m(self) -> float:
+        """Height in W of the road that it is on; of the sea it is that at rest."""
+        return 0.0 if self.is_afloat else float(self.position_enu_m[2])
 
 
 class AttitudeTarget(Struct, frozen=True, kw_only=True, eq=False):

@@ -1,1 +1,1 @@
-"""The quadrotor, its rotors, the air and what it stands on."""
+"""The quadrotor, its rotors and what it stands on."""

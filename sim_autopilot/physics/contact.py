@@ -4,9 +4,9 @@ Eight points of B touch: four feet and the four outer edges of the rotor discs. 
 with d' its rate, is pushed out by `max(0, k d + c d')`: contacts never pull. Friction on a top face is a spring and
 damper from an anchor on that face, bounded by mu times the normal force; at the bound the anchor is dragged along
 (Cundall and Strack 1979), so a drone at rest stays where it is. On a flank friction is viscous below the bound.
-Surfaces are frames (23,): origin 0:3, R_WV 3:12, velocity 12:15, angular velocity in W 15:18, half length, half width,
-height, presence, lowest road. The ground is such a frame without end (`ground`), but under the vehicle only the vehicle
-counts.
+Surfaces are frames (24,): origin 0:3, R_WV 3:12, velocity 12:15, angular velocity in W 15:18, half length, half width,
+height, presence, lowest road, present road. The ground is such a frame without end (`ground`), but under the vehicle
+only the vehicle counts.
 
 With four feet of 2000 N/m the drone sinks 1.8 mm at rest and swings at 73 rad/s; 55 N s/m a foot is critical damping.
 """
@@ -51,17 +51,18 @@ GROUND = Surface.GROUND.value
 DECK = Surface.DECK.value
 SIDE = Surface.SIDE.value
 
-DECK_SIZE = 19
-"""Position 3, orientation 4, velocity 3, angular velocity 3, half length, half width, height, presence, age, lowest."""
-FRAME_SIZE = 23
+DECK_SIZE = 20
+"""Position 3, orientation 4, velocity 3, angular velocity 3, half length, half width, height, presence, age, lowest,
+road."""
+FRAME_SIZE = 24
 GROUND_FRAME: Array = np.array(
-    [0.0] * 3 + [1.0, 0, 0, 0, 1.0, 0, 0, 0, 1.0] + [0.0] * 6 + [np.inf, np.inf, 0.0, 1.0, 0.0]
+    [0.0] * 3 + [1.0, 0, 0, 0, 1.0, 0, 0, 0, 1.0] + [0.0] * 6 + [np.inf, np.inf, 0.0, 1.0, 0.0, 0.0]
 )
 
 
 @kernel
 def fill_frame(deck: Array, elapsed_s: float, turned: Array, out: Array) -> None:
-    """Write the frame (23,) of `deck` (19,) carried on by its velocities for `elapsed_s`; `turned` (4,) is scratch."""
+    """Write the frame (24,) of `deck` (20,) carried on by its velocities for `elapsed_s`; `turned` (4,) is scratch."""
     elapsed_s += deck[17]
     fill_turned(deck[3:7], (deck[10] * elapsed_s, deck[11] * elapsed_s, deck[12] * elapsed_s), turned)
     fill_matrix(turned, out[3:12])
@@ -72,6 +73,7 @@ def fill_frame(deck: Array, elapsed_s: float, turned: Array, out: Array) -> None
     for i in range(4):
         out[18 + i] = deck[13 + i]
     out[22] = deck[18]
+    out[23] = deck[19]
 
 
 @kernel
@@ -169,7 +171,7 @@ def touched_surface(y: Array, rotation: Array, i: int, frame: Array, local: Arra
             add_motion(y, rotation, frame, local)
             return DECK if axis == 2 else SIDE
     localise(y, rotation, CONTACT_POINTS_FLU_M[i], GROUND_FRAME, local)
-    local[2] -= ground_height_kernel(y[0], y[1], frame[0], frame[1], frame[2], frame[22])
+    local[2] -= ground_height_kernel(y[0], y[1], frame[0], frame[1], frame[23], frame[22])
     if local[2] >= 0.0:
         return NO_SURFACE
     add_motion(y, rotation, GROUND_FRAME, local)
@@ -185,7 +187,7 @@ def add_contact(
     Args:
         y: (13,) state.
         rotation: (9,) R_WB.
-        frame: (23,) the vehicle.
+        frame: (24,) the vehicle.
         anchors: (8, 3) friction anchor on its surface, x and y m, and that surface's code.
         body: the airframe's record.
         scratch: (15,) overwritten.

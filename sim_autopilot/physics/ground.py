@@ -1,8 +1,9 @@
 """How high the ground is: flat, at z = 0 in W, and about a vehicle whose road leads down as low as it drives.
 
-Such a road runs in a cutting of `CUTTING_M`: roughness and a ship's heave move no ground. Far from the vehicle the
-ground stays as low as its road has led, so that a valley does not fill up under a drone that the vehicle has left
-there. Nor does the ground move on which the drone starts, about W's origin, unless the road leads through there.
+Such a road runs in a cutting of `CUTTING_M`: roughness moves no ground. Nor does a ship that heaves: it is on no road.
+Far from the vehicle the ground stays as low as its road has led, so that a valley does not fill up under a drone that
+the vehicle has left there. Nor does the ground move on which the drone starts, about W's origin, unless the road leads
+through there.
 """
 
 import math

@@ -52,5 +52,5 @@ def fill_gains(
         height = local[2] - frame[20]
         if not over(local, frame) or height < 0.0:
             localise(y, rotation, point, GROUND_FRAME, local)
-            height = local[2] - ground_height_kernel(y[0], y[1], frame[0], frame[1], frame[2], frame[22])
+            height = local[2] - ground_height_kernel(y[0], y[1], frame[0], frame[1], frame[23], frame[22])
         out[i] = thrust_gain(height, body["rotor_radius_m"], airspeed, induced)

@@ -58,8 +58,8 @@ def height_over_roof(y: Array, deck: Array, elapsed_s: float) -> float:
 def nearness(y: Array, deck: Array, elapsed_s: float) -> int:
     """Return whether a surface may touch the drone, only lift it, or is too far for both."""
     ahead = elapsed_s + deck[17]
-    vehicle = deck[0] + deck[7] * ahead, deck[1] + deck[8] * ahead, deck[2] + deck[9] * ahead
-    ground_m = ground_height_kernel(y[0], y[1], vehicle[0], vehicle[1], vehicle[2], deck[18])
+    vehicle = deck[0] + deck[7] * ahead, deck[1] + deck[8] * ahead
+    ground_m = ground_height_kernel(y[0], y[1], vehicle[0], vehicle[1], deck[19], deck[18])
     height = min(y[2] - ground_m, height_over_roof(y, deck, elapsed_s))
     if height < TOUCH_M:
         return IN_TOUCH
@@ -152,7 +152,7 @@ def advance_body(
         speed: (4,) rotor speeds, rad/s.
         command: (4,) rotor speeds, rad/s, or [T, L, M, N] of an airframe that takes them directly.
         anchors: (8, 3) of the friction.
-        deck: (19,) the vehicle at the start of the call.
+        deck: (20,) the vehicle at the start of the call.
         wind: (3,) m/s in W.
         body: the airframe's record.
         solid: whether ground and vehicle are there to be touched.

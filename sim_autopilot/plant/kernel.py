@@ -33,7 +33,7 @@ def advance(
         flying: whether the motors run; `reference` counts only then.
         reference: (25,) at the start of the call.
         own_error: (6,) of the position and velocity in W that the controller believes in.
-        deck: (19,) the vehicle at the start of the call.
+        deck: (20,) the vehicle at the start of the call.
         wind: (3,) m/s in W.
         control_record: (1,) the controller's.
         body_record: (1,) the airframe's.

@@ -12,9 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from link.messages import Vector3
+from sim_autopilot.air.wind import second_order_noise
 from sim_autopilot.core.data import Array
 from sim_autopilot.core.noise import NoiseSeed
-from sim_autopilot.physics.wind import second_order_noise
 
 _BLOCK = 1024  # steps whose noise is drawn at once
 NO_ERROR: Array = np.zeros(6)

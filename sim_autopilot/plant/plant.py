@@ -141,6 +141,7 @@ def _deck_vector(deck: Deck, t_ns: int) -> Array:
     vector[16] = 1.0
     vector[17] = (t_ns - deck.t_ns) * 1e-9
     vector[18] = deck.lowest_m
+    vector[19] = deck.road_m
     return vector
 
 

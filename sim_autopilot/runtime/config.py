@@ -100,12 +100,23 @@ class RangeFinderConfig(RangeLimits):
     max_m: RangeEnd = 100.0  # of its range
 
 
+class SuperstructureConfig(StrictModel):
+    """A box that stands on a deck, in the wind."""
+
+    length_m: Positive
+    width_m: Positive
+    height_m: Positive  # above the deck
+    rear_m: Coordinate  # its rear face, ahead of the deck's middle
+
+
 class VehicleConfig(StrictModel):
     """The vehicle's body, which its truth does not tell; its roof is as high as the pad it tells of."""
 
     length_m: Positive = 4.2
     width_m: Positive = 1.8
     roof_height_m: NotNegative = 1.5  # until the vehicle tells its pad's height; MBZIRC 2017
+    is_afloat: bool = False  # until the vehicle tells its pad
+    superstructure: SuperstructureConfig | None = None  # None: the body itself is in the wind
 
 
 class LinkConfig(StrictModel):

@@ -6,15 +6,13 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from link.messages import BodyTruth, RotorTruth
 from link.payloads import cdr
 from link.program.clock import ClockTick, ScaledClock, spare_present_objects
 from link.transports.opening import Transport
 from link.zenoh.keys import Keys
 from link.zenoh.session import ZenohSession
-from sim_autopilot.physics.wind import WindModel
+from sim_autopilot.air.air import Air
 from sim_autopilot.plant.snapshot import drone_truth, rotor_truth
 from sim_autopilot.runtime.node import AutopilotNode
 from sim_autopilot.runtime.vehicle_view import VehicleView
@@ -41,18 +39,15 @@ class WireLoop:
         node: the autopilot.
         links: open ones.
         vehicle: the deck under the drone.
-        wind: the air.
+        air: at the drone.
         speed: simulated seconds a wall second, 0 for as many as it can.
     """
 
-    def __init__(
-        self, node: AutopilotNode, links: Links, vehicle: VehicleView, wind: WindModel, *, speed: float
-    ) -> None:
+    def __init__(self, node: AutopilotNode, links: Links, vehicle: VehicleView, air: Air, *, speed: float) -> None:
         self._node = node
         self._links = links
         self._vehicle = vehicle
-        self._wind = wind
-        self._wind_enu_m_s = np.zeros(3)
+        self._air = air
         self._speed = speed
         self._stopping = False
         self._clock = self._new_clock()
@@ -74,9 +69,7 @@ class WireLoop:
         """Advance by one step and tell everybody."""
         node = self._node
         deck = self._vehicle.deck(node.next_ns)
-        airspeed_m_s = float(np.linalg.norm(node.state.velocity_enu_m_s - self._wind_enu_m_s))
-        self._wind_enu_m_s = self._wind.advance(node.step_ns * 1e-9, airspeed_m_s)
-        self._send(node.step(deck, self._wind_enu_m_s))
+        self._send(node.step(deck, self._air.advance(node.step_ns * 1e-9, node.state, deck)))
         self._publish()
 
     def _listen(self) -> None:

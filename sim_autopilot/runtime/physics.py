@@ -5,6 +5,9 @@ from math import pi
 import numpy as np
 
 from link.records import replace
+from sim_autopilot.air.air import Air
+from sim_autopilot.air.airflow import Obstacle
+from sim_autopilot.air.wind import Gust, Turbulence, WindModel
 from sim_autopilot.core.noise import NoiseSeed, named_seed
 from sim_autopilot.physics.airframe import (
     ARDUCOPTER_AIRFRAME,
@@ -13,8 +16,7 @@ from sim_autopilot.physics.airframe import (
     REPORT_AIRFRAME,
     Airframe,
 )
-from sim_autopilot.physics.wind import Gust, Turbulence, WindModel
-from sim_autopilot.runtime.config import DroneConfig, SimAutopilotConfig, WindConfig
+from sim_autopilot.runtime.config import DroneConfig, SimAutopilotConfig, SuperstructureConfig, WindConfig
 
 _AIRFRAMES = {
     "report": REPORT_AIRFRAME,
@@ -50,6 +52,36 @@ def wind_model(config: SimAutopilotConfig, seed: NoiseSeed | None = None) -> Win
     turbulence = Turbulence[wind.turbulence.upper()] if std_m_s is None else std_m_s
     seed = named_seed(config.seed, "turbulence") if seed is None else seed
     return WindModel(seed, wind.mean_m_s, from_rad + pi, turbulence, gust=_gust(wind))
+
+
+def air_model(
+    config: SimAutopilotConfig, wind_seed: NoiseSeed | None = None, wake_seed: NoiseSeed | None = None
+) -> Air:
+    """Return the wind with what a vehicle makes of it.
+
+    Args:
+        config: of the wind and the vehicle.
+        wind_seed: of the wind's turbulence, or the generator that draws it; None for the configuration's.
+        wake_seed: of the turbulence behind the vehicle, likewise.
+    """
+    wake_seed = named_seed(config.seed, "wake") if wake_seed is None else wake_seed
+    structure = config.vehicle.superstructure
+    return Air(
+        wind_model(config, wind_seed),
+        wake_seed,
+        None if structure is None else superstructure_of(structure, config.vehicle.roof_height_m),
+    )
+
+
+def superstructure_of(structure: SuperstructureConfig, deck_height_m: float) -> Obstacle:
+    """Return what stands on a deck, as it stands in the wind."""
+    return Obstacle(
+        length_m=structure.length_m,
+        width_m=structure.width_m,
+        height_m=structure.height_m,
+        ahead_m=structure.rear_m + 0.5 * structure.length_m,
+        foot_m=deck_height_m,
+    )
 
 
 def _gust(wind: WindConfig) -> Gust | None:

@@ -17,7 +17,7 @@ from sim_autopilot.interfaces import AutopilotConfig
 from sim_autopilot.runtime.config import SimAutopilotConfig
 from sim_autopilot.runtime.loop import Links, WireLoop
 from sim_autopilot.runtime.node import STEP_NS, AutopilotNode
-from sim_autopilot.runtime.physics import wind_model
+from sim_autopilot.runtime.physics import air_model
 from sim_autopilot.runtime.vehicle_view import VehicleView
 
 
@@ -51,9 +51,8 @@ def run(settings: SimAutopilotConfig, autopilot: AutopilotConfig, options: RunOp
         AutopilotNode(autopilot, 0).step(None, np.zeros(3))  # loads the compiled kernels before time starts to count
         cdr.load()
         node = AutopilotNode(autopilot, time.time_ns() // STEP_NS * STEP_NS)
-        body = settings.vehicle
-        vehicle = VehicleView(zenoh, options.keys, (body.length_m, body.width_m), body.roof_height_m)
+        vehicle = VehicleView(zenoh, options.keys, settings.vehicle)
         links = Links(keys=options.keys, transports=transports, zenoh=zenoh)
-        loop = WireLoop(node, links, vehicle, wind_model(settings), speed=options.speed)
+        loop = WireLoop(node, links, vehicle, air_model(settings), speed=options.speed)
         log.info("ready", mavlink=" ".join(options.devices), firmware=settings.firmware, speed=options.speed)
         loop.run()

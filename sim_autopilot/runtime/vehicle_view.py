@@ -10,6 +10,7 @@ from link.records import replace
 from link.zenoh.keys import Keys
 from link.zenoh.session import Inbox, ZenohSession
 from sim_autopilot.core.data import Deck
+from sim_autopilot.runtime.config import VehicleConfig
 
 _ASK_AGAIN_NS = 1_000_000_000
 _ASK_TIMEOUT_S = 1.0
@@ -17,7 +18,7 @@ _SILENT_MAX_NS = 1_000_000_000
 """Of simulated time: an older truth is no longer carried on, the vehicle is gone."""
 
 
-def deck_of(truth: BodyTruth, roof_size_m: tuple[float, float], roof_height_m: float) -> Deck:
+def deck_of(truth: BodyTruth, body: VehicleConfig) -> Deck:
     """Return the vehicle as the physics takes it."""
     q = truth.orientation_wxyz
     return Deck(
@@ -26,8 +27,9 @@ def deck_of(truth: BodyTruth, roof_size_m: tuple[float, float], roof_height_m: f
         orientation_wxyz=np.array(q),
         velocity_enu_m_s=np.array(rotate(q, truth.velocity_flu_m_s)),
         angular_velocity_enu_rad_s=np.array(rotate(q, truth.angular_velocity_flu_rad_s)),
-        roof_size_m=roof_size_m,
-        roof_height_m=roof_height_m,
+        roof_size_m=(body.length_m, body.width_m),
+        roof_height_m=body.roof_height_m,
+        is_afloat=body.is_afloat,
     )
 
 
@@ -37,18 +39,14 @@ class VehicleView:
     Args:
         session: an open one.
         keys: of the contract.
-        roof_size_m: length and width of the body, which nobody tells.
-        roof_height_m: until the pad's height is told.
+        body: its length and width, which nobody tells, and the rest until the pad is told.
     """
 
-    def __init__(
-        self, session: ZenohSession, keys: Keys, roof_size_m: tuple[float, float], roof_height_m: float
-    ) -> None:
+    def __init__(self, session: ZenohSession, keys: Keys, body: VehicleConfig) -> None:
         self._session = session
         self._keys = keys
         self._truths = session.subscribe(keys.vehicle_truth)
-        self._roof_size_m = roof_size_m
-        self._roof_height_m = roof_height_m
+        self._body = body
         self._answers: Inbox | None = None
         self._asked_ns: int | None = None
         self._told = False
@@ -71,7 +69,7 @@ class VehicleView:
         except PayloadError:
             self.bad_payloads += 1
             return
-        self._deck = deck_of(truth, self._roof_size_m, self._roof_height_m)
+        self._deck = deck_of(truth, self._body)
 
     def _learn_pad(self, t_ns: int) -> None:
         for sample in self._answers.take() if self._answers is not None else ():
@@ -80,9 +78,10 @@ class VehicleView:
             except PayloadError:
                 self.bad_payloads += 1
                 continue
-            self._told, self._roof_height_m = True, pad.height_m
+            self._told = True
+            self._body = self._body.model_copy(update={"roof_height_m": pad.height_m, "is_afloat": pad.is_afloat})
             if self._deck is not None:
-                self._deck = replace(self._deck, roof_height_m=pad.height_m)
+                self._deck = replace(self._deck, roof_height_m=pad.height_m, is_afloat=pad.is_afloat)
         if not self._told and (self._asked_ns is None or t_ns - self._asked_ns >= _ASK_AGAIN_NS):
             self._asked_ns = t_ns
             self._answers = self._session.ask(self._keys.pad, b"", _ASK_TIMEOUT_S)

@@ -52,8 +52,8 @@ def _distance_to_surface_m(memory: AutopilotMemory, beam: Vector3) -> float:
         return _along(up_m, beam[2])
     age_s = (state.t_ns - deck.t_ns) * 1e-9
     away = state.position_enu_m - deck.position_enu_m - age_s * deck.velocity_enu_m_s
-    vehicle_m = (east_m - float(away[0]), north_m - float(away[1]), up_m - float(away[2]))
-    ground_m = _along(up_m - ground_height(east_m, north_m, *vehicle_m, deck.lowest_m), beam[2])
+    vehicle_m = (east_m - float(away[0]), north_m - float(away[1]))
+    ground_m = _along(up_m - ground_height(east_m, north_m, *vehicle_m, deck.road_m, deck.lowest_m), beam[2])
     q_VW = conjugate(deck.orientation_wxyz)
     x, y, z = rotate(q_VW, (float(away[0]), float(away[1]), float(away[2])))
     forward, left, up = rotate(q_VW, beam)

@@ -9,6 +9,7 @@ from link.records import replace
 from scenarios.catalogue.catalogue import load_scenario
 from scenarios.scoring.score import Score, Tier, score
 from scenarios.scoring.touchdown import ScoreRules, rules_of
+from sim_autopilot.air.airflow import Obstacle
 from sim_autopilot.physics.contact import BLADE_REACH_M
 from tests.scenarios.scoring.synthetic import (
     CALM,
@@ -24,6 +25,7 @@ from tests.scenarios.scoring.synthetic import (
 )
 
 NOT_SECURED = Landing(off_after_s=None)
+HANGAR = Obstacle(length_m=20.0, width_m=13.7, height_m=6.1, ahead_m=20.0, foot_m=1.5)
 
 
 def test_measures_at_contact_are_those_of_the_descent() -> None:
@@ -120,9 +122,20 @@ def test_motors_off_and_slide_are_measured() -> None:
 
 
 def test_trim_is_the_tilt_that_the_drag_needs() -> None:
-    result = scored(replace(NOT_SECURED, vehicle_m_s=20.0), RULES)
+    result = scored(replace(NOT_SECURED, vehicle_m_s=20.0), replace(RULES, obstacle=None))
     assert result.touchdown is not None
     assert result.touchdown.trim_rad == pytest.approx(math.atan(0.25 * 20.0 / (1.507 * 9.81)))
+
+
+def test_trim_counts_the_air_that_the_vehicle_makes() -> None:
+    landing = replace(NOT_SECURED, vehicle_m_s=20.0)
+    over_the_car, behind_a_hangar = (
+        scored(landing, replace(RULES, obstacle=obstacle)).touchdown for obstacle in (RULES.obstacle, HANGAR)
+    )
+    assert over_the_car is not None
+    assert behind_a_hangar is not None
+    assert over_the_car.trim_rad == pytest.approx(math.atan(0.25 * 24.0 / (1.507 * 9.81)), abs=0.02)
+    assert behind_a_hangar.trim_rad == pytest.approx(0.0, abs=0.05)
 
 
 def test_trim_counts_the_wind() -> None:

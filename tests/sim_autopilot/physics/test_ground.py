@@ -82,6 +82,16 @@ def test_drone_below_its_start_is_pushed_by_no_ground_that_it_is_above(above_m: 
     assert np.abs(flight.position_m[:, 2] - high_m).max() < 0.05
 
 
+def test_waves_move_no_ground() -> None:
+    deck = replace(down_there(0.0), is_afloat=True)
+    flight = flown(CONFIG, at_rest(CONFIG, (FAR_M, 0.0, GEAR_HEIGHT_M)), lambda _: None, 1.0, deck_at=lambda _: deck)
+    assert set(flight.surface) == {Surface.GROUND}
+    assert np.abs(flight.position_m[:, 2] - GEAR_HEIGHT_M).max() < 0.01
+    drone = [body(t_s, (FAR_M, 0.0, 1.0 + GEAR_HEIGHT_M), STILL) for t_s in TIMES_S]
+    vehicle = [body(t_s, (FAR_M + 5.0, 0.0, -LOW_M), STILL) for t_s in TIMES_S]
+    assert touches(truth_log(drone, vehicle, []), replace(BOX, is_afloat=True)).height_m.min() == pytest.approx(1.0)
+
+
 @pytest.mark.parametrize(("above_m", "touches_it"), [(1.0, False), (-0.2, True)])
 def test_score_counts_the_ground_where_it_is(above_m: float, *, touches_it: bool) -> None:
     place = (FAR_M, 0.0, CUTTING_M - LOW_M + GEAR_HEIGHT_M + above_m)

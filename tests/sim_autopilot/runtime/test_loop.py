@@ -22,6 +22,7 @@ from link.zenoh.keys import Keys
 from link.zenoh.session import Inbox, ZenohOptions, ZenohSession, open_session
 from scenarios.processes.programs import free_tcp_endpoint, free_udp_port
 from sim_autopilot.core.data import Deck
+from sim_autopilot.runtime.config import VehicleConfig
 from sim_autopilot.runtime.vehicle_view import VehicleView
 from tests.sim_autopilot.pilot import arm, set_mode, setpoint
 
@@ -29,7 +30,7 @@ pytestmark = pytest.mark.wire
 
 DEADLINE_S = 60.0
 KEYS = Keys("loop_test")
-PAD = PadGeometry(size_m=(1.5, 1.5), height_m=1.1, antenna_to_pad_m=(0.0, 0.0, 0.0))
+PAD = PadGeometry(size_m=(1.5, 1.5), height_m=1.1, antenna_to_pad_m=(0.0, 0.0, 0.0), is_afloat=True)
 
 
 def until(condition: Callable[[], bool]) -> None:
@@ -173,7 +174,7 @@ def test_the_deck_has_the_vehicles_motion_and_its_pads_height(companion: Compani
     companion.zenoh.serve(KEYS.pad, lambda _query: json_messages.encode(PAD))
     endpoint = companion.arguments[-1]
     with open_session(ZenohOptions(connect=(endpoint,))) as session:
-        view = VehicleView(session, KEYS, (4.2, 1.8), 1.5)
+        view = VehicleView(session, KEYS, VehicleConfig())
         assert view.deck(truth.t_ns) is None
         times_ns = itertools.count(truth.t_ns, 50_000_000)  # an answer that is lost is asked for again after a second
         decks: list[Deck] = []
@@ -189,6 +190,7 @@ def test_the_deck_has_the_vehicles_motion_and_its_pads_height(companion: Compani
             return bool(decks) and view.bad_payloads > 0  # what is sent before the two are connected may be lost
 
         until(have_both_arrived)
+        assert decks[0].is_afloat
         assert np.allclose(decks[0].velocity_enu_m_s, (5.0 * 0.28, 5.0 * 0.96, 0.0))
         assert np.allclose(decks[0].angular_velocity_enu_rad_s, (0.0, 0.0, 0.1))
         assert view.deck(next(times_ns) + 2_000_000_000) is None

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 from scipy import signal
 
+from sim_autopilot.air.wind import Gust, Turbulence, WindModel, dryden
 from sim_autopilot.core.data import Array
-from sim_autopilot.physics.wind import Gust, Turbulence, WindModel, dryden
 
 AIRSPEED_M_S = 10.0
 DT_S = 0.02
