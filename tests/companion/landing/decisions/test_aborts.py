@@ -12,6 +12,7 @@ from companion.core.reasons import Cause, Reason
 from companion.landing.decisions.aborts import ABORTS, is_not_followed, is_out_of_range, strays
 from companion.landing.decisions.conditions import Condition, cause_of
 from companion.landing.decisions.entries import update_held
+from companion.landing.decisions.standing import FASTER_ON_ROOF
 from companion.landing.state.memory import Held
 from companion.situation.phases import LANDING_PHASES, Event, Phase
 from companion.situation.situation import Following, Situation
@@ -192,9 +193,18 @@ def test_a_committed_descent_turns_back_from_a_risky_contact_or_tries(facts: Sit
 def test_descent_breaks_off_where_the_air_pushes_harder_than_the_gear_holds(
     height_m: float, more_m_s2: float, breaks_off: bool
 ) -> None:
-    facts = changed(situation(height_m), pushed_m_s2=CONFIG.touchdown.gear_friction * GRAVITY_M_S2 + more_m_s2)
+    held_m_s2 = CONFIG.touchdown.gear_friction * GRAVITY_M_S2
+    facts = changed(situation(height_m), pushed_m_s2=(held_m_s2 + more_m_s2) / FASTER_ON_ROOF)
     decision, _ = first_decision(Phase.DESCEND, facts, 0.1)
     assert (decision is not None and decision[1].reason is Reason.WOULD_BLOW_OFF) is breaks_off
+
+
+def test_drone_that_slides_on_the_pad_is_not_judged_by_what_pushes_it() -> None:
+    drone = drone_at(0.0, 0.0, (0.0, 1.5 * CONFIG.abort.near_speed_max_m_s, 0.0), pad=pad_at())
+    sliding = changed(replace(situation(), drone=drone), pushed_m_s2=2.0 * GRAVITY_M_S2)
+    decision, _ = first_decision(Phase.DESCEND, sliding, 1.0)
+    assert decision is not None
+    assert decision[1].reason is Reason.TOO_FAST_NEAR_PAD
 
 
 @pytest.mark.parametrize(

@@ -63,7 +63,7 @@ UNSAFE: dict[Reason, Situation] = {
         drone=drone_at(NEAR_M, 0.0, (CONFIG.abort.near_speed_max_m_s + 0.01, 0.0, 0.0), pad=pad_at()),
     ),
     Reason.WOULD_BLOW_OFF: changed(
-        situation(CONFIG.descent.wait.height_m), pushed_m_s2=CONFIG.touchdown.gear_friction * GRAVITY_M_S2 + 0.01
+        situation(CONFIG.descent.wait.height_m), pushed_m_s2=CONFIG.touchdown.gear_friction * GRAVITY_M_S2
     ),
     Reason.CONTACT_RISKY: risky(LOW_M),
     Reason.TOO_FAR_FROM_START: replace(
