@@ -3,8 +3,8 @@
 A drone without thrust stands by the friction of its gear alone. The air over the pad goes on to push it as it did in
 flight, where the lean that holds against the air shows how hard that is: at 45 m/s by three quarters of its weight. It
 pushes harder on the roof than over it, for a body in a stream drives the air about it faster. Over a car, taken as half
-an ellipsoid (Lamb, Hydrodynamics, section 114), the air has 1.19 times the stream's speed where a drone stands, and 1.07
-times where it waits. What grows with the square of the airspeed is mostly the drag of turning rotors, which then stop.
+an ellipsoid (Lamb, Hydrodynamics, section 114), the air has 1.19 times the stream's speed where a drone stands, and
+1.07 times where it waits. Drag is taken as linear in it: with the rotors off, less of it is left than in flight.
 """
 
 from companion.config.companion import CompanionConfig
