@@ -12,7 +12,7 @@ import math
 import numpy as np
 from msgspec import Struct
 
-from link.frames.rotations import conjugate, quaternion_from_roll_pitch_yaw, rotate, wrap_angle
+from link.frames.rotations import conjugate, multiply, quaternion_from_roll_pitch_yaw, rotate, wrap_angle
 from link.messages import BodyTruth, Quaternion, Vector3
 from link.records import replace
 from scenarios.config import VehicleConfig
@@ -116,7 +116,9 @@ def vehicle_at(memory: VehicleMemory, t_ns: int, plan: VehiclePlan) -> VehicleSt
         swaying = heave, _dived(memory, t_ns, course, pitch), roll
     elif course.seaway is not None:
         swaying = course.seaway.at(0.0 if memory.started_ns is None else (t_ns - memory.started_ns) * 1e-9, motion)
-    return state_on_road(t_ns, motion, course.road.at(motion.s_m), course.roughness, swaying)
+    state = state_on_road(t_ns, motion, course.road.at(motion.s_m), course.roughness, swaying)
+    turns = plan.departure.backwards + sum(motion.s_m > cusp_m for cusp_m in course.cusps_m)
+    return _backwards(state) if turns % 2 else state
 
 
 def _dived(memory: VehicleMemory, t_ns: int, course: Course, pitch: Vector3) -> Vector3:
@@ -190,6 +192,17 @@ def state_on_road(
         angular_velocity_flu_rad_s=_body_rates(roll_rad, pitch_rad, roll_rate_rad_s, pitch_rate_rad_s, yaw_rate_rad_s),
         yaw_rad=yaw_rad,
         yaw_rate_rad_s=yaw_rate_rad_s,
+    )
+
+
+def _backwards(state: VehicleState) -> VehicleState:
+    """Return the vehicle turned round where it is: what was its front is its rear."""
+    roll_rate_rad_s, pitch_rate_rad_s, yaw_rate_rad_s = state.angular_velocity_flu_rad_s
+    return replace(
+        state,
+        orientation_wxyz=multiply(state.orientation_wxyz, (0.0, 0.0, 0.0, 1.0)),
+        angular_velocity_flu_rad_s=(-roll_rate_rad_s, -pitch_rate_rad_s, yaw_rate_rad_s),
+        yaw_rad=wrap_angle(state.yaw_rad + math.pi),
     )
 
 

@@ -49,7 +49,10 @@ class BrakeEvent:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Course:
-    """What a vehicle drives; `brake`, `roughness`, `sway` and `seaway` are None where the track has none."""
+    """What a vehicle drives; `brake`, `roughness`, `sway` and `seaway` are None where the track has none.
+
+    At each of `cusps_m` along the road it stops and drives on the other way round: with its rear ahead, or its front.
+    """
 
     road: Road
     profile: Profile
@@ -57,3 +60,4 @@ class Course:
     brake: BrakeEvent | None = None
     sway: Sway | None = None
     seaway: Seaway | None = None
+    cusps_m: tuple[float, ...] = ()

@@ -27,6 +27,7 @@ class Departure(StrictModel):
     hover_radius_m: Positive = 2.5  # of a drone whose own place may be off by three times 0.5 m and more
     hover_s: NotNegative = 1.0
     departs_s: NotNegative = 1.0
+    backwards: bool = False  # with its rear ahead, all along the track
 
 
 _SPEED_ROUNDING_M_S = 1e-9

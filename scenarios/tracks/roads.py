@@ -10,7 +10,7 @@ eight points, which is exact to rounding for the half a radian that a piece turn
 import math
 from bisect import bisect_right
 from collections.abc import Sequence
-from itertools import pairwise
+from itertools import accumulate, pairwise
 
 import numpy as np
 from msgspec import Struct
@@ -173,6 +173,17 @@ def polyline(waypoints_m: Sequence[Point]) -> Road:
     if not pieces:
         raise ValueError(f"a road needs two waypoints, not {list(waypoints_m)}")
     return Road(pieces=tuple(pieces), starts_m=tuple(piece.s_m for piece in pieces), length_m=s_m)
+
+
+def cusps_of(waypoints_m: Sequence[Point], speeds_m_s: Sequence[float]) -> tuple[float, ...]:
+    """Return how far along a polyline a vehicle stops where the next line leads back."""
+    places_m = accumulate(math.dist(a, b) for a, b in pairwise(waypoints_m))
+    corners = zip(places_m, speeds_m_s[1:], waypoints_m, waypoints_m[1:], waypoints_m[2:], strict=False)
+    return tuple(
+        place_m
+        for place_m, speed_m_s, (ax, ay), (bx, by), (cx, cy) in corners
+        if speed_m_s == 0.0 and (bx - ax) * (cx - bx) + (by - ay) * (cy - by) < 0.0
+    )
 
 
 def curve_through(waypoints_m: Sequence[Point]) -> tuple[Road, list[float]]:

@@ -32,7 +32,7 @@ from scenarios.tracks.drive import drive_course
 from scenarios.tracks.drive_config import DriveTrack, VesselTrack
 from scenarios.tracks.heights import Slope
 from scenarios.tracks.profiles import Profile, cruise_steps, profile_of, waypoint_steps
-from scenarios.tracks.roads import Piece, Point, advance, curve_through, polyline, road_of
+from scenarios.tracks.roads import Piece, Point, advance, curve_through, cusps_of, polyline, road_of
 from scenarios.tracks.seaway import seaway_of
 
 Steps = list[tuple[float, float]]
@@ -130,14 +130,18 @@ def _figure_eight(track: FigureEightTrack) -> Steps:
 
 
 def _waypoints_course(track: WaypointsTrack) -> Course:
-    """Return the report's course; behind the last waypoint the vehicle brakes to a stop, straight on."""
+    """Return the report's course; behind the last waypoint the vehicle brakes to a stop, straight on.
+
+    Where it stops and the lines lead back, it does not turn round: it backs up.
+    """
     if track.smooth:
         road, distances_m = curve_through(track.waypoints_m)
     else:
         road, distances_m = polyline(track.waypoints_m), [math.dist(a, b) for a, b in pairwise(track.waypoints_m)]
     braking_s = track.speeds_m_s[-1] / track.braking_m_s2
     steps = [*waypoint_steps(distances_m, track.speeds_m_s), (braking_s, -track.braking_m_s2)]
-    return Course(road=road, profile=profile_of(steps, speed_m_s=track.speeds_m_s[0]))
+    cusps_m = () if track.smooth else cusps_of(track.waypoints_m, track.speeds_m_s)
+    return Course(road=road, profile=profile_of(steps, speed_m_s=track.speeds_m_s[0]), cusps_m=cusps_m)
 
 
 def _stop_and_go_course(track: StopAndGoTrack) -> Course:

@@ -19,7 +19,7 @@ from scenarios.simulation.vehicle import (
     vehicle_truth,
 )
 from scenarios.simulation.vehicle_node import plan_of
-from scenarios.tracks.config import ShakeConfig
+from scenarios.tracks.config import ShakeConfig, WaypointsTrack
 from scenarios.worlds.world import draw_world
 from tests.rotations import matrix_of
 
@@ -56,20 +56,22 @@ def driven(
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    "name",
+    ("name", "backwards"),
     [
-        "straight_5",
-        "figure_eight_7",
-        "circle_8",
-        "stop_and_go_7",
-        "lane_change_7",
-        "random_7",
-        "rough_road_5",
-        "report_1",
+        ("straight_5", False),
+        ("figure_eight_7", False),
+        ("circle_8", False),
+        ("stop_and_go_7", False),
+        ("lane_change_7", False),
+        ("random_7", False),
+        ("rough_road_5", False),
+        ("rough_road_5", True),
+        ("report_1", False),
     ],
 )
-def test_velocity_acceleration_and_angular_velocity_are_the_derivatives_of_the_pose(name: str) -> None:
+def test_velocity_acceleration_and_angular_velocity_are_the_derivatives_of_the_pose(name: str, backwards: bool) -> None:
     plan = plan_of(load_scenario(name), seed=2)
+    plan = replace(plan, departure=plan.departure.model_copy(update={"backwards": backwards}))
     memory = VehicleMemory(departs_ns=START_NS)
     step_ns = 20_000
     step_s = step_ns * 1e-9
@@ -89,6 +91,31 @@ def test_velocity_acceleration_and_angular_velocity_are_the_derivatives_of_the_p
         )
         bad += not smooth
     assert bad <= 2  # instants at which curvature or acceleration jumps
+
+
+def test_vehicle_that_drives_backwards_has_its_rear_ahead() -> None:
+    plan = plan_of(load_scenario("circle_8"), seed=2)
+    rear_ahead = replace(plan, departure=plan.departure.model_copy(update={"backwards": True}))
+    one, other = (vehicle_at(VehicleMemory(departs_ns=START_NS), START_NS + 30 * 10**9, p) for p in (plan, rear_ahead))
+    assert other.position_enu_m == one.position_enu_m
+    assert other.velocity_enu_m_s == one.velocity_enu_m_s
+    assert math.cos(other.yaw_rad - one.yaw_rad) == pytest.approx(-1.0)
+    assert other.yaw_rate_rad_s == one.yaw_rate_rad_s != 0.0
+    along, back = (np.array(vehicle_truth(state).velocity_flu_m_s) for state in (one, other))
+    np.testing.assert_allclose(back, (-1.0, -1.0, 1.0) * along, atol=1e-9)
+
+
+@pytest.mark.parametrize(("corner_m_s", "turns_round"), [(0.0, False), (2.0, True)])
+def test_vehicle_that_stops_and_is_led_back_backs_up(corner_m_s: float, turns_round: bool) -> None:
+    track = WaypointsTrack(
+        kind="waypoints",
+        waypoints_m=((0.0, 0.0), (4.0, 0.0), (0.0, 1.0)),
+        speeds_m_s=(2.0, corner_m_s, 2.0),
+    )
+    plan = plan_of(load_scenario("straight_5").model_copy(update={"track": track}), seed=2)
+    leads_back = vehicle_at(VehicleMemory(departs_ns=0), round(8.2 / (2.0 + corner_m_s) * 1e9), plan)
+    assert leads_back.velocity_enu_m_s[0] < 0.0
+    assert (abs(leads_back.yaw_rad) > 0.5 * math.pi) is turns_round
 
 
 def test_vehicle_stands_until_the_drone_has_hovered_for_a_second() -> None:
