@@ -74,6 +74,7 @@ class PadPath(Struct, frozen=True, kw_only=True, eq=False):
         swing: how its deck tilts and shakes, beside the grade; None where the vehicle does not tell.
         unplaced: why the pad's place is not known; None when it is. Until then it is not landed on.
         frame_offset: of the drone's frame from the vehicle's fixes'.
+        crest_above_m: how far above its present height waves have lifted it of late.
     """
 
     offset_s: Array
@@ -93,6 +94,7 @@ class PadPath(Struct, frozen=True, kw_only=True, eq=False):
     swing: PadSwing | None = None
     unplaced: Cause | None = None
     frame_offset: FrameOffset = FrameOffset()
+    crest_above_m: float = 0.0
 
     @property
     def ground_speed_m_s(self) -> float:

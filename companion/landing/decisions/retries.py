@@ -31,7 +31,8 @@ _LASTING = (
 def end_climb(progress: Progress, s: Situation, config: CompanionConfig) -> Decision | None:
     """Return the event that ends a climb after an abort, None while it goes on."""
     in_phase_s = (s.monotonic_ns - progress.since_ns) * 1e-9
-    high = s.approach is not None and s.approach.height_m > 0.8 * config.abort.height_m
+    crest_m = 0.0 if s.pad is None else s.pad.crest_above_m
+    high = s.approach is not None and s.approach.height_m > 0.8 * config.abort.height_m + crest_m
     ready = high and holds(HEARD, progress.held, s, config)
     if not ready and in_phase_s < config.abort.time_limit_s:
         return None

@@ -27,6 +27,7 @@ from companion.landing.steering.virtual_model import NO_RIDE, Ride, Tracking, mo
 from companion.planning.guidance import GuidanceMemory, ReferenceState
 from companion.situation.phases import Phase
 from companion.sortie.memory import SortieMemory, move_sortie
+from companion.vehicle.crest import Crest
 from companion.vehicle.estimator import EstimatorMemory
 from companion.vehicle.hindsight import Hindsight
 from companion.vehicle.range_watch import RangeWatch
@@ -91,6 +92,7 @@ class VehicleMemory(Struct, frozen=True, kw_only=True, eq=False):
         ranges: the last readings of the drone's range finder.
         is_road_elsewhere: it is said to be far above or below the ground; None before that can be judged.
         frame_moves: of the frame that the estimate and the ranges are in.
+        crest: how high waves have lifted its deck.
     """
 
     estimator: EstimatorMemory | None = None
@@ -107,6 +109,7 @@ class VehicleMemory(Struct, frozen=True, kw_only=True, eq=False):
     ranges: RangeWatch = field(default_factory=RangeWatch)
     is_road_elsewhere: bool | None = None
     frame_moves: FrameMoves = NO_MOVES
+    crest: Crest = Crest()
 
 
 class ModelMemory(Struct, frozen=True, kw_only=True, eq=False):

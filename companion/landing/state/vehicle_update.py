@@ -25,6 +25,7 @@ from companion.landing.state.step_data import StepInputs, System
 from companion.landing.steering.targets import HORIZON_OFFSETS_S
 from companion.planning.guidance import are_finite
 from companion.situation.phases import FOLLOWING_PHASES, LANDING_PHASES, Phase
+from companion.vehicle.crest import Crest, crest_above_m, update_crest
 from companion.vehicle.hindsight import forget_instants, update_hindsight
 from companion.vehicle.pad import PadPath, pad_path
 from companion.vehicle.pad_reach import is_agreement_old
@@ -168,7 +169,8 @@ def _in_present_frame(vehicle: VehicleMemory, inputs: StepInputs, system: System
     if now == before:
         return vehicle
     if now.origin_count != before.origin_count:
-        return replace(vehicle, estimator=None, slide=FixSlide(), ranges=RangeWatch(), frame_moves=now)
+        vehicle = replace(vehicle, crest=Crest(), frame_moves=now)
+        return replace(vehicle, estimator=None, slide=FixSlide(), ranges=RangeWatch())
     estimator, seen_m = vehicle.estimator, between(before.shift_enu_m, now.shift_enu_m)
     if estimator is not None:
         told_m = between(before.origin_shift_enu_m, now.origin_shift_enu_m)
@@ -180,7 +182,7 @@ def _in_present_frame(vehicle: VehicleMemory, inputs: StepInputs, system: System
         steps += [_frame_step(told_ns, np.zeros(3), told_m, 0.0)] if told_m.any() else []
         estimator = system.estimator.fuse(estimator, steps)
     ranges = moved_up(vehicle.ranges, float(seen_m[2]))
-    return replace(vehicle, estimator=estimator, slide=FixSlide(), ranges=ranges, frame_moves=now)
+    return replace(vehicle, estimator=estimator, slide=FixSlide(), ranges=ranges, crest=Crest(), frame_moves=now)
 
 
 def _frame_step(t_ns: int, seen_m: Array, told_m: Array, variance_m2: float) -> Measurement:
@@ -211,8 +213,17 @@ def predict_pad(
         )
         if is_agreement_old(pad, system.config):
             vehicle = replace(vehicle, sightings=forget_agreement(sightings))
+        if pad.mounting.is_afloat:
+            vehicle, pad = _see_crest(vehicle, pad, inputs.monotonic_ns)
         return vehicle, without_contradicted_heading(pad, vehicle.course)
     return replace(vehicle, estimator=None), None
+
+
+def _see_crest(vehicle: VehicleMemory, pad: PadPath, monotonic_ns: int) -> tuple[VehicleMemory, PadPath]:
+    deck_enu_m = float(pad.position_enu_m[0, 2])
+    crest = update_crest(vehicle.crest, monotonic_ns, deck_enu_m)
+    vehicle = vehicle if crest is vehicle.crest else replace(vehicle, crest=crest)
+    return vehicle, replace(pad, crest_above_m=crest_above_m(crest, deck_enu_m))
 
 
 def _are_frames_one(vehicle: VehicleMemory, inputs: StepInputs, system: System) -> bool:

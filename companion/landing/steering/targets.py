@@ -200,7 +200,7 @@ def _height_m(phase: Phase, pad: PadPath, reference: ReferenceState, config: Com
     """Return the wanted height over the pad of a phase that does not land."""
     match phase:
         case Phase.ABORT:
-            return clear_height_m(config.abort.height_m, pad, config)
+            return clear_height_m(config.abort.height_m, pad, config) + pad.crest_above_m
         case Phase.ALIGN:
             return config.descent.alignment.height_m + pad.frame_offset.higher_m
         case _ if config.guidance.style is LandingStyle.DIRECT:

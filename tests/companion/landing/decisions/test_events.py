@@ -141,6 +141,18 @@ def test_retries_are_counted_down_to_a_hold() -> None:
     assert decided(last, high, LONG_HEARD) == (Event.CLEAR_TO_HOLD, given_up)
 
 
+def test_climb_over_a_deck_goes_on_until_the_drone_is_clear_of_the_waves_crest() -> None:
+    facts = situation(CONFIG.abort.height_m)
+    assert facts.pad is not None
+    in_a_trough = replace(facts, pad=replace(facts.pad, crest_above_m=4.6))
+    assert decided(progress(Phase.ABORT), in_a_trough, LONG_HEARD) is None
+    clear = situation(CONFIG.abort.height_m + 4.6)
+    clear = replace(clear, pad=in_a_trough.pad)
+    decision = decided(progress(Phase.ABORT), clear, LONG_HEARD)
+    assert decision is not None
+    assert decision[0] is Event.CLEAR
+
+
 VAGUE = pad_at(placed=False)
 
 

@@ -78,6 +78,15 @@ def test_phases_before_the_descent_keep_the_feet_above_the_pad(phase: Phase) -> 
     np.testing.assert_allclose(raised.target.position_enu_m[:, 2], aim.target.position_enu_m[:, 2] + 2.3)
 
 
+def test_climb_after_an_abort_leads_clear_of_the_waves_crest() -> None:
+    pad = _pad_path(5.0)
+    calm, heaving = (
+        pad_aim(Phase.ABORT, one, _at(0.0, -2.0, 5.0), FEET_M, CONFIG, limits=LIMITS).target.position_enu_m[:, 2]
+        for one in (pad, replace(pad, crest_above_m=4.6))
+    )
+    np.testing.assert_allclose(heaving, calm + 4.6)
+
+
 def test_chase_comes_lower_as_the_distance_closes() -> None:
     pad = _pad_path(5.0)
     far = pad_aim(Phase.CHASE, pad, _at(-20.0, -2.0, 5.0), FEET_M, CONFIG, limits=LIMITS).target.position_enu_m[0, 2]
