@@ -1,12 +1,12 @@
 """The air at the drone: the wind, and what the vehicle near it makes of that."""
 
-from math import hypot, sqrt
+from math import hypot
 
 import numpy as np
 
 from link.frames.rotations import conjugate, rotate
-from link.messages import Quaternion, Vector3
-from sim_autopilot.air.airflow import NO_CHANGE, Flow, Obstacle, body_of, flow_at
+from link.messages import Vector3
+from sim_autopilot.air.airflow import Obstacle, body_of, flow_at
 from sim_autopilot.air.wind import WindModel, first_order_step
 from sim_autopilot.core.data import Array, Deck, PlantState
 from sim_autopilot.core.noise import NoiseSeed
@@ -45,30 +45,14 @@ class Air:
 
     def _about(self, dt_s: float, place_enu_m: Array, wind_enu_m_s: Array, deck: Deck, obstacle: Obstacle) -> Vector3:
         """Return what the vehicle adds to the wind at a place, its turbulence included."""
-        x, y, z = (wind_enu_m_s - deck.velocity_enu_m_s).tolist()
-        away_x, away_y, away_z = (place_enu_m - deck.position_enu_m).tolist()
-        q = tuple(deck.orientation_wxyz.tolist())
-        flow = flow_about(obstacle, q, (away_x, away_y, away_z), (x, y, z))
-        if flow is NO_CHANGE:
-            return NO_CHANGE.change_m_s
+        to_vehicle = conjugate(deck.orientation_wxyz)
+        along_m_s, across_m_s, _ = rotate(to_vehicle, wind_enu_m_s - deck.velocity_enu_m_s)
+        place_flu_m = rotate(to_vehicle, place_enu_m - deck.position_enu_m)
+        flow = flow_at(obstacle, place_flu_m, (along_m_s, across_m_s))
         change = list(flow.change_m_s)
         if flow.turbulence_m_s > 0.0:
-            elapsed = dt_s * sqrt(x * x + y * y) / obstacle.height_m
+            elapsed = dt_s * hypot(along_m_s, across_m_s) / obstacle.height_m
             for i, noise in enumerate(self._generator.standard_normal(3).tolist()):
                 self._eddies[i] = first_order_step(self._eddies[i], elapsed, noise)
                 change[i] += flow.turbulence_m_s * self._eddies[i]
-        return rotate(q, (change[0], change[1], change[2]))
-
-
-def flow_about(obstacle: Obstacle, q_WV: Quaternion, away_enu_m: Vector3, stream_enu_m_s: Vector3) -> Flow:
-    """Return the air, in V, at a place `away_enu_m` from the vehicle's origin.
-
-    Args:
-        obstacle: the vehicle's.
-        q_WV: (4,) w x y z, the vehicle's attitude.
-        away_enu_m: (3,) in W.
-        stream_enu_m_s: (3,) velocity of the air far away against the vehicle, in W.
-    """
-    to_vehicle = conjugate(q_WV)
-    u, v, _ = rotate(to_vehicle, stream_enu_m_s)
-    return flow_at(obstacle, rotate(to_vehicle, away_enu_m), (u, v))
+        return rotate(deck.orientation_wxyz, change)

@@ -169,8 +169,8 @@ def _in_present_frame(vehicle: VehicleMemory, inputs: StepInputs, system: System
     if now == before:
         return vehicle
     if now.origin_count != before.origin_count:
-        vehicle = replace(vehicle, crest=Crest(), frame_moves=now)
-        return replace(vehicle, estimator=None, slide=FixSlide(), ranges=RangeWatch())
+        vehicle = replace(vehicle, estimator=None, slide=FixSlide(), ranges=RangeWatch())
+        return replace(vehicle, crest=Crest(), frame_moves=now)
     estimator, seen_m = vehicle.estimator, between(before.shift_enu_m, now.shift_enu_m)
     if estimator is not None:
         told_m = between(before.origin_shift_enu_m, now.origin_shift_enu_m)
