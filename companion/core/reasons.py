@@ -81,7 +81,8 @@ class Reason(Enum):
         "let it stamp each picture with the time of its exposure"
     )
     SIGHTINGS_IMPOSSIBLE = (
-        "sightings move the pad as no vehicle moves: let the detector stamp each picture with the time of its exposure"
+        "sightings move the pad as no vehicle moves: let the detector stamp each picture with the time of its exposure,"
+        " and see the camera's mounting"
     )
     VEHICLE_OUTRUNS = "vehicle faster than the limit"
     STATION_OUTRUNS = "vehicle turns too fast for a station so far from it: give a nearer one, or in the frame north"

@@ -38,6 +38,7 @@ from link.records import replace
 _MORE_SHARE = 0.15  # of the vehicle's speed
 _RECEIVER_TOLD_S = 3.0  # it says so once a second
 _TOLD_M = 0.1  # what heights are told to
+_SEEN_HEIGHT = "mend the board's size, the camera's calibration or silent_vehicle.pad_height_m"  # by which it is told
 _ROUNDING = 1e-6
 _BEFORE_AN_ARMING = frozenset({Phase.IDLE, Phase.SECURED, Phase.PILOT})
 _BEFORE_A_FLIGHT = frozenset({Phase.IDLE, Phase.SECURED, Phase.PILOT, Phase.HOLD, Phase.WAITING})
@@ -125,13 +126,15 @@ def _is_elsewhere(s: Situation, c: CompanionConfig) -> bool:
     return not is_fix_old(s, c) and s.vehicle.is_road_elsewhere
 
 
-def _elsewhere(s: Situation, _: CompanionConfig) -> Cause:
-    above_m = road_above_ground_m(s)
+def _elsewhere(s: Situation, c: CompanionConfig) -> Cause:
+    above_m, is_silent = road_above_ground_m(s), c.silent_vehicle is not None
     if above_m is None:  # an outage has taken the ground's height
-        told = "was said to be far above or below the ground: land, mend its altitude, start again"
+        mend = _SEEN_HEIGHT if is_silent else "mend its altitude"
+        told = f"was said to be far above or below the ground: land, {mend}, start again"
     else:
+        mend = _SEEN_HEIGHT if is_silent else "let drone and vehicle tell altitudes of one kind"
         where = f"{abs(above_m):.1f} m {'above' if above_m > 0.0 else 'below'} the ground {road_distance_m(s):.0f} m"
-        told = f"is said to be {where} from it: let drone and vehicle tell altitudes of one kind"
+        told = f"is said to be {where} from it: {mend}"
     return Cause(Reason.ROAD_ELSEWHERE, (told,))
 
 

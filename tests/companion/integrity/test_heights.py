@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from companion.core.reasons import sentence
+from companion.config.companion import SilentVehicleConfig
+from companion.core.reasons import Reason, sentence
 from companion.integrity.heights import is_road_elsewhere, is_seen_too_near, update_ground
 from companion.landing.decisions.feasibility import OBSTACLES, obstacle
 from companion.situation.phases import Phase
@@ -183,6 +184,18 @@ def test_ground_that_an_outage_has_taken_is_not_told_in_numbers() -> None:
     told = obstacle(held, facts, CONFIG)
     assert told is not None
     assert sentence(told).endswith("land, mend its altitude, start again")
+
+
+@pytest.mark.parametrize("ground_is_known", [True, False])
+def test_vehicle_that_is_only_seen_is_told_without_altitudes_that_it_does_not_tell(ground_is_known: bool) -> None:
+    facts = changed(near(30.0, 10.0), is_road_elsewhere=True)
+    facts = facts if ground_is_known else changed(facts, ground_enu_m=None)
+    silent = CONFIG.model_copy(update={"silent_vehicle": SilentVehicleConfig()})
+    told = obstacle({one.reason: 0 for one in OBSTACLES if one.is_true(facts, silent)}, facts, silent)
+    assert told is not None
+    assert told.reason is Reason.ROAD_ELSEWHERE
+    assert "altitude" not in sentence(told)
+    assert "the board's size, the camera's calibration or silent_vehicle.pad_height_m" in sentence(told)
 
 
 @pytest.mark.slow

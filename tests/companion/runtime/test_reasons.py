@@ -62,3 +62,9 @@ def test_pad_that_is_seen_elsewhere_is_told_with_the_lever_arm() -> None:
 
 def test_mounting_of_the_camera_is_told_where_sightings_disagree_as_a_mirrored_one_has_them() -> None:
     assert "mounting" in sentence(Cause(Reason.SIGHTINGS_DISAGREE))
+
+
+def test_sightings_that_move_the_pad_are_told_with_the_mounting(capsys: pytest.CaptureFixture[str]) -> None:
+    assert "the camera's mounting" in sentence(Cause(Reason.SIGHTINGS_IMPOSSIBLE))
+    reasons([Reason.SIGHTINGS_IMPOSSIBLE.name])
+    assert "turned about the vertical" in " ".join(capsys.readouterr().out.split())
