@@ -15,11 +15,15 @@ _UPRIGHT_MIN = 0.5  # cosine of a tilt beyond which a range finder does not look
 
 
 def drone_now(own: OwnState | None, t_ns: int, yaw_rad: float, age_max_s: float) -> Drone | None:
-    """Return the drone at `t_ns`, carried forward at its reported velocity; None when the report is too old."""
+    """Return the drone at `t_ns`, carried forward at its reported velocity; None when the report is too old.
+
+    An attitude comes with the report of a place. Where the two together are too old, the later one is missed.
+    """
     if own is None:
         return None
     age_s = (t_ns - own.t_ns) * 1e-9
-    if abs(age_s) > age_max_s:
+    is_attitude_known = age_s + own.attitude_age_s <= age_max_s
+    if abs(age_s) > age_max_s or (not is_attitude_known and age_s >= own.attitude_age_s):
         return None
     velocity = np.array(own.velocity_enu_m_s)
     position = np.array(own.position_enu_m) + velocity * age_s
@@ -31,7 +35,7 @@ def drone_now(own: OwnState | None, t_ns: int, yaw_rad: float, age_max_s: float)
         age_s=age_s,
         acceleration_up_m_s2=own.acceleration_up_m_s2,
         jolt_m_s2=own.jolt_m_s2,
-        attitude_known=age_s + own.attitude_age_s <= age_max_s,
+        attitude_known=is_attitude_known,
         lean=lean,
         lean_rate_hz=lean_rate_hz,
     )

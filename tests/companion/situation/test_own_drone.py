@@ -12,6 +12,7 @@ from companion.core.data import OwnState
 from companion.situation.own_drone import drone_now, lowest_foot
 from companion.situation.situation import Drone
 from link.frames.rotations import multiply, normalized, quaternion_from_roll_pitch_yaw, rotate
+from link.records import replace
 
 TOUCHDOWN = CompanionConfig().touchdown
 STEP_S = 1e-6
@@ -32,6 +33,23 @@ def drone_of(orientation_wxyz: tuple[float, float, float, float], rates: tuple[f
     drone = drone_now(own, 0, 0.0, 1.0)
     assert drone is not None
     return drone
+
+
+@pytest.mark.parametrize("attitude_age_s", [0.0, 0.02, 0.1])
+def test_place_that_is_told_no_more_is_missed_itself_and_not_the_attitude(attitude_age_s: float) -> None:
+    own = OwnState(
+        t_ns=0,
+        position_enu_m=(0.0, 0.0, 5.0),
+        velocity_enu_m_s=(0.0, 0.0, 0.0),
+        orientation_wxyz=(1.0, 0.0, 0.0, 0.0),
+        angular_velocity_flu_rad_s=(0.0, 0.0, 0.0),
+        attitude_age_s=attitude_age_s,
+    )
+    drones = [drone_now(own, age_ms * 1_000_000, 0.0, 0.5) for age_ms in range(0, 600, 5)]
+    assert all(drone is None or drone.attitude_known for drone in drones)
+    late = drone_now(replace(own, attitude_age_s=0.49), 20_000_000, 0.0, 0.5)
+    assert late is not None
+    assert not late.attitude_known
 
 
 def lowest_m(orientation_wxyz: tuple[float, float, float, float]) -> float:
