@@ -194,6 +194,11 @@ def tell_unseen(s: Situation, config: CompanionConfig) -> Cause:
     return Cause(Reason.OFFSET_UNKNOWN, (_STEPPED_REMEDY if has_stepped else _FRAME_REMEDIES[configured],))
 
 
+def tell_unheard(s: Situation, config: CompanionConfig) -> Cause:
+    """Return why nothing is known of the vehicle now: of one that tells nothing, why it is not seen."""
+    return Cause(Reason.NO_VEHICLE_DATA) if config.silent_vehicle is None else tell_unseen(s, config)
+
+
 def _was_unfixed(phases: FixedPhases, monotonic_ns: int) -> bool:
     """Return whether the drone's receiver was without a fix lately."""
     return phases.unfixed_ns is not None and not _is_held(phases.unfixed_ns, monotonic_ns)

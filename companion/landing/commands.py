@@ -5,6 +5,7 @@ import math
 from companion.config.autopilot import Guide
 from companion.config.companion import CompanionConfig
 from companion.core.reasons import Cause, Reason, sentence
+from companion.integrity.frames import tell_unheard
 from companion.integrity.heights import VEHICLE_M
 from companion.integrity.stamps import named_by_stamps
 from companion.landing.decisions.aborts import why_unplaced
@@ -38,7 +39,7 @@ def missing_for_sortie(
     if config.autopilot.guide is Guide.PRECLAND:
         return Cause(Reason.GUIDES_ONLY)
     if s.pad is None or is_fix_old(s, config):
-        return named_by_stamps(obstacle) or Cause(Reason.NO_VEHICLE_DATA)
+        return named_by_stamps(obstacle) or tell_unheard(s, config)
     match event:
         case Event.LAUNCH:
             return _missing_for_launch(s) or _unless_ground_is_deck(obstacle) or _rally_out_of_range(s, config)
@@ -60,7 +61,7 @@ def why_no_station(station: Station, s: Situation, config: CompanionConfig) -> C
     if distance_m > config.sortie.offset_max_m:
         return Cause(Reason.STATION_TOO_FAR, (distance_m, config.sortie.offset_max_m))
     if s.pad is None:
-        return Cause(Reason.NO_VEHICLE_DATA)
+        return tell_unheard(s, config)
     keep_out = keep_out_of(s.pad, config)
     if not is_inside(station.offset_m, keep_out):
         return None

@@ -2,6 +2,7 @@
 
 from companion.config.companion import CompanionConfig
 from companion.core.reasons import Cause, Reason, sentence
+from companion.integrity.frames import tell_unheard
 from companion.integrity.stamps import named_by_stamps
 from companion.landing.decisions.aborts import is_out_of_range, why_unplaced
 from companion.landing.decisions.conditions import (
@@ -56,7 +57,7 @@ def _no_retry(progress: Progress, s: Situation, config: CompanionConfig) -> Caus
     first = next((Cause(reason) for reason, holds_now in known.items() if holds_now), None)
     impossible = obstacle(progress.held, s, config)
     if first == Cause(Reason.NO_VEHICLE_DATA):
-        first = named_by_stamps(impossible) or first
+        first = named_by_stamps(impossible) or tell_unheard(s, config)
     if not (is_heading_to_be_shown(s, config) and progress.cause.reason is not Reason.HEADING_UNKNOWN):
         first = first or why_unplaced(s)  # a heading that an alignment has waited for in vain is not waited for again
     if first is None and progress.cause.reason in _LASTING:

@@ -64,7 +64,7 @@ OWN_LOST = (
 """Nobody knows where the drone is."""
 _OWN_LOST_REASONS = frozenset(condition.reason for condition in OWN_LOST)
 _VEHICLE_UNHEARD = frozenset({Reason.VEHICLE_DATA_OLD, Reason.VEHICLE_LINK_LOST})
-_UNHEARD_AFTER_CLIMB = frozenset({Reason.NO_VEHICLE_DATA, Reason.HEARD_WITH_BREAKS})
+_UNHEARD_AFTER_CLIMB = frozenset({Reason.NO_VEHICLE_DATA, Reason.PAD_NOT_SEEN, Reason.HEARD_WITH_BREAKS})
 
 NOT_FOLLOWED = Condition(
     reason=Reason.SETPOINT_NOT_FOLLOWED,

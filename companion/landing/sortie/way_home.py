@@ -4,6 +4,7 @@ import math
 
 from companion.config.companion import CompanionConfig
 from companion.core.reasons import Cause, Reason, same_or_new
+from companion.integrity.frames import tell_unheard
 from companion.landing.decisions.conditions import is_fix_old
 from companion.landing.sortie.over_vehicle import SPEED_SHARE, WAY_SHARE
 from companion.situation.phases import OUT_PHASES, Phase
@@ -57,5 +58,5 @@ def warn_of_way_home(sortie: SortieMemory, phase: Phase, s: Situation, config: C
     spare_s = lasts_s - needed_s if math.isfinite(lasts_s) else math.inf
     if spare_s > config.sortie.warn_before_s or not math.isfinite(needed_s):  # no way home leads to who is faster
         return None
-    refused = Cause(Reason.NO_VEHICLE_DATA) if is_fix_old(s, config) else out_of_reach(s, config)
+    refused = tell_unheard(s, config) if is_fix_old(s, config) else out_of_reach(s, config)
     return same_or_new(sortie.warning, refused or Cause(Reason.HOME_SOON, (max(spare_s, 0.0),)))

@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 
 from companion.config.companion import CompanionConfig, SilentVehicleConfig
 from companion.core.reasons import Cause, Reason
+from companion.landing.commands import missing_for_sortie
 from companion.landing.decisions.entries import Decision, update_held
 from companion.landing.decisions.events import decide
 from companion.landing.state.memory import ControlMemory, Held
@@ -68,3 +69,18 @@ def test_height_keeps_the_pad_in_a_view_of_45_degrees_as_far_as_a_detector_sees(
     height_m = chase_height_m(pad, at, SILENT)
     assert CONFIG.descent.alignment.height_m <= height_m <= HIGHEST_M
     assert height_m > min(away_m + 2.0 * std_m, HIGHEST_M) - 1e-9
+
+
+@pytest.mark.parametrize(
+    ("is_unplaced", "reason"), [(False, Reason.PAD_NOT_SEEN), (True, Reason.SIGHTINGS_UNPLACED)], ids=["unseen", "late"]
+)
+def test_a_climb_without_a_sighting_ends_with_what_to_see_to_and_not_with_data_that_nobody_sends(
+    is_unplaced: bool, reason: Reason
+) -> None:
+    facts = changed(situation(CONFIG.abort.height_m), fix_age_s=CONFIG.abort.fix_age_max_s + 0.1)
+    facts = changed(facts, has_unplaced_sightings=is_unplaced)
+    climb = progress(Phase.ABORT, CONFIG.abort.time_limit_s + 0.1)
+    assert decide(climb, ControlMemory(), facts, SILENT) == (Event.CLEAR_TO_HOLD, Cause(reason))
+    assert missing_for_sortie(Event.RETURN, None, facts, SILENT, None) == Cause(reason)
+    told = decide(climb, ControlMemory(), facts, CONFIG)
+    assert told == (Event.CLEAR_TO_HOLD, Cause(Reason.NO_VEHICLE_DATA))
