@@ -125,9 +125,9 @@ class AutopilotLink:
         if self.driver is not None:
             self.setpoints.send(setpoint, self.driver, local_ns)
 
-    def ask_often(self, *, is_landing: bool) -> None:
+    def ask_often(self, *, is_steered: bool) -> None:
         """Ask for the time as often as setpoints are sent, where nothing else tells from instant to instant of them."""
-        self.session.clock_sync.asks_often = is_landing and self.setpoints.answers.sent_ns is None
+        self.session.clock_sync.asks_often = is_steered and self.setpoints.answers.sent_ns is None
 
     def send_commands(self, commands: tuple[AutopilotCommand, ...], local_ns: int) -> None:
         """Send commands; their acknowledgements come back by `take_acknowledgements`.

@@ -7,6 +7,7 @@ from companion.config.planning import GuidanceKind
 from companion.core.data import STEP_MAX_S, FlightLimits
 from companion.landing.carried_on import limit_rates
 from companion.landing.decisions.conditions import is_fix_old
+from companion.landing.decisions.contact_trial import hears_setpoints
 from companion.landing.decisions.waiting import waits_at_m
 from companion.landing.sortie.aims import advance_way, sortie_aim
 from companion.landing.sortie.riding import is_carried_by_deck, model_on_deck
@@ -193,10 +194,12 @@ def _is_left_by_pad(memory: StepMemory, situation: Situation, config: CompanionC
 def _to_lost_drone(memory: StepMemory, situation: Situation) -> StepMemory:
     """Return the memory with the virtual model where the drone is, once the drone has lost it and nothing watches that.
 
-    A drone that hovered through a silent link is not to be sent after a model that has flown on.
+    A drone that hovered through a silent link is not to be sent after a model that has flown on. Nor is one at a
+    station that did not hear setpoints until a moment ago.
     """
     phase, drone, tracking = memory.progress.phase, situation.drone, memory.model.tracking
-    is_watched = phase in LANDING_PHASES or phase in (Phase.TOUCHDOWN, Phase.FOLLOW)
+    is_watched = phase in LANDING_PHASES or phase is Phase.TOUCHDOWN
+    is_watched = is_watched or (phase is Phase.FOLLOW and hears_setpoints(situation))
     if is_watched or drone is None or tracking.error_m < situation.following.error_max_m:
         return memory
     model, places = model_at(drone, memory.model, situation.monotonic_ns), memory.places

@@ -15,7 +15,7 @@ from companion.runtime.publishing import StatusPublisher, with_links
 from companion.runtime.step_clock import StepClock
 from companion.runtime.step_commands import StepCommands, refuse_motors_off
 from companion.runtime.vehicle_link import VehicleLink
-from companion.situation.phases import FLYING_PHASES, LANDING_PHASES, Phase
+from companion.situation.phases import FLYING_PHASES, LANDING_PHASES, STATION_PHASES, Phase
 from companion.step import companion_step
 from companion.vehicle.estimator import BufferHealth
 from companion.vehicle.factory import make_estimator
@@ -217,7 +217,7 @@ class CompanionNode:
         )
         self.inputs = inputs
         self.memory, self.outputs = companion_step(self.memory, inputs, self.system)
-        self.autopilot.ask_often(is_landing=self.phase in LANDING_PHASES | {Phase.ABORT})
+        self.autopilot.ask_often(is_steered=self.phase in LANDING_PHASES | STATION_PHASES | {Phase.ABORT})
         self._send(inputs, self.outputs, local_ns)
 
     def _start_refusal(self, switched: Command | None) -> CommandReply | None:

@@ -25,6 +25,7 @@ from companion.landing.decisions.conditions import (
     tell_taken,
     turns_on_spot,
 )
+from companion.landing.decisions.contact_trial import hears_setpoints
 from companion.landing.decisions.standing import has_touched, tell_blown_off, would_blow_off
 from companion.landing.steering.losing import LOST_FOR_S
 from companion.situation.phases import LANDING_PHASES, NEAR_PHASES, Phase
@@ -143,6 +144,11 @@ def outruns(s: Situation, c: CompanionConfig) -> bool:
     return s.pad.ground_speed_m_s > s.limits.speed_max_m_s
 
 
+def _tell_not_followed(s: Situation, _: CompanionConfig) -> Cause:
+    """Return why the drone is not where it was asked to be: it may not have heard of it."""
+    return Cause(Reason.SETPOINT_NOT_FOLLOWED if hears_setpoints(s) else Reason.SETPOINTS_UNHEARD)
+
+
 CONTACT_RISKY = Condition(reason=Reason.CONTACT_RISKY, phases=_DESCENT, is_true=_is_contact_risky, cause=_tell_risk)
 """Ends a commitment to land as well, as long as the drone does not stand."""
 
@@ -184,6 +190,7 @@ ABORTS = (
         phases=LANDING_PHASES,
         is_true=is_not_followed,
         hold_s=lambda _, c: c.abort.tracking_hold_s,
+        cause=_tell_not_followed,
     ),
     Condition(
         reason=Reason.OUTSIDE_CONE, phases=_DESCENT, is_true=_is_outside_cone, hold_s=lambda _, c: c.abort.cone_hold_s

@@ -33,12 +33,12 @@ def is_in_contact(s: Situation, c: CompanionConfig) -> bool:
 
 def is_contact_tried(s: Situation, c: CompanionConfig) -> bool:
     """Return whether all signs agree, and the autopilot hears how the drone is pressed down."""
-    return _is_heard(s) and is_in_contact(s, c)
+    return hears_setpoints(s) and is_in_contact(s, c)
 
 
 def is_disputed_contact_tried(s: Situation, c: CompanionConfig) -> bool:
     """Return whether all signs agree, or all but the range finder's, and the autopilot hears the press."""
-    return _is_heard(s) and _may_stand(s, c)
+    return hears_setpoints(s) and _may_stand(s, c)
 
 
 def is_unheard(s: Situation, c: CompanionConfig) -> bool:
@@ -54,7 +54,8 @@ def _may_stand(s: Situation, c: CompanionConfig) -> bool:
     return verdict(signs_of(s, c.touchdown), c) in {Verdict.CONTACT, Verdict.DISPUTED}
 
 
-def _is_heard(s: Situation) -> bool:
+def hears_setpoints(s: Situation) -> bool:
+    """Return whether the autopilot hears setpoints, and has for so long that it follows them again."""
     answering_s = s.following.answering_s
     return _is_answering(s) and (answering_s is None or answering_s >= _FOLLOWS_AGAIN_S)
 

@@ -84,4 +84,4 @@ def test_drone_that_no_setpoint_reaches_any_more_is_noticed(
     lost_s = run.recording.elapsed_s
     while run.companion.phase in LANDING_PHASES and run.recording.elapsed_s < lost_s + NOTICED_S:
         run.step()
-    assert run.companion.memory.progress.cause.reason is Reason.SETPOINT_NOT_FOLLOWED
+    assert run.companion.memory.progress.cause.reason is Reason.SETPOINTS_UNHEARD
