@@ -7,7 +7,7 @@ from msgspec import Struct
 from link.records import replace
 
 _SPAN_S = 30.0  # two waves of sea state 7 (STANAG 4194: 15 s)
-_MOST_M = 10.0  # from trough to crest, 57 m aft on a destroyer in sea state 7; more is a step of the frame
+_MOST_M = 10.0  # from the lowest to the highest, 57 m aft on a destroyer in sea state 7; more is a step of the frame
 
 
 class Crest(Struct, frozen=True, kw_only=True):
