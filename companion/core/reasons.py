@@ -65,7 +65,7 @@ class Reason(Enum):
     VEHICLE_DATA_OLD = "vehicle data too old"
     VEHICLE_UNCERTAIN = "vehicle position too uncertain"
     VEHICLE_LINK_LOST = "vehicle's link lost"
-    VEHICLE_CLOCK_AHEAD = "vehicle's clock is ahead"
+    VEHICLE_CLOCK_AHEAD = "vehicle's clock is ahead, or the autopilot's link is too slow"
     STAMPS_STEPPED = "stamps of the fixes have stepped: the vehicle's clock, or the autopilot's, was set"
     VEHICLE_CONTRADICTS_ITSELF = "vehicle data contradict themselves: {:.0%} of its {} were rejected: see {}"
     SEEN_ELSEWHERE = (

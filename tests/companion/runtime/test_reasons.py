@@ -68,3 +68,9 @@ def test_sightings_that_move_the_pad_are_told_with_the_mounting(capsys: pytest.C
     assert "the camera's mounting" in sentence(Cause(Reason.SIGHTINGS_IMPOSSIBLE))
     reasons([Reason.SIGHTINGS_IMPOSSIBLE.name])
     assert "turned about the vertical" in " ".join(capsys.readouterr().out.split())
+
+
+@pytest.mark.parametrize("reason", [Reason.STAMPS_AHEAD, Reason.VEHICLE_CLOCK_AHEAD])
+def test_fixes_that_come_before_their_stamps_are_told_with_the_autopilots_link(reason: Reason) -> None:
+    """Through a link that is full the autopilot's time comes late, before a flight as in it."""
+    assert "the autopilot's link is too slow" in reason.value
