@@ -12,14 +12,7 @@ from companion.config.companion import CompanionConfig
 from link.messages import PadGeometry
 from link.program.toml_config import Ascending, Coordinate, NotNegative, Positive, Range, StrictModel
 from scenarios.tracks.config import TrackConfig
-from sim_autopilot.runtime.config import (
-    DatumConfig,
-    DroneConfig,
-    Place,
-    RangeEnd,
-    RangeLimits,
-    SuperstructureConfig,
-)
+from sim_autopilot.runtime.config import DatumConfig, DroneConfig, Place, RangeEnd, RangeLimits, SuperstructureConfig
 
 Share = Annotated[float, Field(ge=0.0, le=1.0)]
 Angle = Annotated[float, Field(ge=-math.pi, le=math.pi)]
@@ -169,17 +162,11 @@ class ChannelConfig(StrictModel):
 
 
 class LinkConfig(StrictModel):
-    """The links of the companion.
+    """The links of the companion."""
 
-    Attributes:
-        mavlink: to and from the autopilot.
-        zenoh: from the vehicle.
-        detector: from the detector of the landing pattern, which is on the drone as the companion is.
-    """
-
-    mavlink: ChannelConfig = ChannelConfig()
-    zenoh: ChannelConfig = ChannelConfig()
-    detector: ChannelConfig = ChannelConfig()
+    mavlink: ChannelConfig = ChannelConfig()  # to and from the autopilot
+    zenoh: ChannelConfig = ChannelConfig()  # from the vehicle
+    detector: ChannelConfig = ChannelConfig()  # from the landing pattern's, which is on the drone as the companion is
 
 
 class VehicleConfig(StrictModel):
