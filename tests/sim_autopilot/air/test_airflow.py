@@ -40,15 +40,14 @@ def test_air_over_a_cars_roof_is_a_fifth_faster() -> None:
 
 
 @given(st.floats(0.0, 6.3), st.floats(0.1, 1.5), st.floats(-12.0, 12.0), st.floats(-12.0, 12.0))
-def test_no_air_flows_through_the_ellipsoid_in_front(yaw: float, rise: float, u: float, v: float) -> None:
+def test_no_air_flows_through_the_ellipsoid(yaw: float, rise: float, u: float, v: float) -> None:
     half = np.array([0.5 * CAR.length_m, 0.5 * CAR.width_m, CAR.height_m])
     unit = np.array([np.cos(yaw) * np.cos(rise), np.sin(yaw) * np.cos(rise), np.sin(rise)])
-    place, stream = half * unit, np.array([u, v, 0.0])
-    flow = flow_at(CAR, (float(place[0]), float(place[1]), float(place[2])), (u, v))
     outward = unit / half
-    if flow.turbulence_m_s == 0.0 and flow is not NO_CHANGE:
-        through = (stream + flow.change_m_s) @ outward / np.linalg.norm(outward)
-        assert abs(through) < 1e-3 * max(1.0, hypot(u, v))
+    place, stream = 1.000001 * half * unit, np.array([u, v, 0.0])
+    flow = flow_at(CAR, (float(place[0]), float(place[1]), float(place[2])), (u, v))
+    through = (stream + flow.change_m_s) @ outward / np.linalg.norm(outward)
+    assert abs(through) < 1e-3 * max(1.0, hypot(u, v))
 
 
 def test_frictionless_flow_neither_begins_nor_turns_round_in_itself() -> None:
