@@ -39,15 +39,16 @@ class Air:
         if deck is not None:
             obstacle = self._superstructure or body_of(deck.roof_size_m, deck.roof_height_m)
             if obstacle is not None:
-                wind += self._about(dt_s, drone.position_enu_m, wind, deck, obstacle)
+                wind += self._about(dt_s, drone, wind, deck, obstacle)
         self._velocity_enu_m_s = wind
         return wind
 
-    def _about(self, dt_s: float, place_enu_m: Array, wind_enu_m_s: Array, deck: Deck, obstacle: Obstacle) -> Vector3:
-        """Return what the vehicle adds to the wind at a place, its turbulence included."""
+    def _about(self, dt_s: float, drone: PlantState, wind_enu_m_s: Array, deck: Deck, obstacle: Obstacle) -> Vector3:
+        """Return what the vehicle, as far on as it is by now, adds to the wind at the drone, turbulence included."""
         to_vehicle = conjugate(deck.orientation_wxyz)
         along_m_s, across_m_s, _ = rotate(to_vehicle, wind_enu_m_s - deck.velocity_enu_m_s)
-        place_flu_m = rotate(to_vehicle, place_enu_m - deck.position_enu_m)
+        since_s = (drone.t_ns - deck.t_ns) * 1e-9
+        place_flu_m = rotate(to_vehicle, drone.position_enu_m - deck.position_enu_m - since_s * deck.velocity_enu_m_s)
         flow = flow_at(obstacle, place_flu_m, (along_m_s, across_m_s))
         change = list(flow.change_m_s)
         if flow.turbulence_m_s > 0.0:

@@ -87,3 +87,14 @@ def test_without_a_superstructure_the_body_itself_is_in_the_wind() -> None:
     assert over[0, 0] == pytest.approx(-0.17 * SPEED_M_S, abs=0.03 * SPEED_M_S)
     on_the_road = replace(deck, roof_height_m=0.0)
     assert not blown(Air(wind(), 1), drone_at(1.7), on_the_road, 0.1).any()
+
+
+def test_vehicle_has_driven_on_since_its_report() -> None:
+    now = replace(deck_at(), t_ns=drone_at(0.0).t_ns)
+    behind = drone_at(2.0)  # a steep change along the road, at the edge of the roof
+    behind = replace(behind, position_enu_m=np.array([-8.0, 0.0, 7.0]))
+    late = replace(now, t_ns=now.t_ns - 50_000_000, position_enu_m=-0.05 * now.velocity_enu_m_s)
+    same, other = (blown(Air(wind(), 1, HANGAR), behind, deck, 0.1) for deck in (now, late))
+    np.testing.assert_allclose(same, other, rtol=1e-12)
+    stale = blown(Air(wind(), 1, HANGAR), behind, replace(late, t_ns=now.t_ns), 0.1)
+    assert np.abs(stale - same).max() > 0.01
