@@ -16,6 +16,7 @@ from companion.landing.state.step_data import StepInputs, System
 from companion.landing.steering.ahead import make_up, model_along, shift_aim
 from companion.landing.steering.flown_plan import extrapolate, flown_plan, state_at
 from companion.landing.steering.following_height import rise_from_ground_m, waiting_rise_m
+from companion.landing.steering.seen_floor import keep_above_seen
 from companion.landing.steering.targets import Aim, hover_aim, is_at_rest, pad_aim, stopping_point
 from companion.landing.steering.virtual_model import Tracking, add_to_past, state_then
 from companion.landing.touchdown.levelling import levelled, levelling_now, limit_tilt
@@ -44,7 +45,8 @@ def _aim(
             phase is not Phase.ABORT or not is_fix_old(situation, config)
         ):
             lowest_m = waits_at_m(memory, situation, config)
-            return pad_aim(phase, pad, reference, situation.feet_offset_m, config, limits=limits, lowest_m=lowest_m)
+            aim = pad_aim(phase, pad, reference, situation.feet_offset_m, config, limits=limits, lowest_m=lowest_m)
+            return keep_above_seen(aim, phase, reference, situation, config)
         case Phase.ABORT:
             return hover_aim(anchor + np.array([0.0, 0.0, config.abort.height_m]))
         case Phase.TAKEOFF if not (situation.autopilot.armed and situation.autopilot.in_control):

@@ -114,8 +114,12 @@ def too_low_m(height_enu_m: float, s: Situation, config: CompanionConfig) -> flo
 
     Where no range finder has told the ground, it is taken to be where the autopilot's local frame began.
     """
-    wait_m = config.takeoff.waiting_height_m
-    return min(max(_feet_on_ground_m(s) + wait_m - height_enu_m, 0.0), wait_m)
+    return min(max(waiting_height_m(s, config) - height_enu_m, 0.0), config.takeoff.waiting_height_m)
+
+
+def waiting_height_m(s: Situation, config: CompanionConfig) -> float:
+    """Return the height in W at which a vehicle is waited for."""
+    return _feet_on_ground_m(s) + config.takeoff.waiting_height_m
 
 
 def _feet_on_ground_m(s: Situation) -> float:
