@@ -1,6 +1,5 @@
 """What the vehicle sends, as measurements for the next step; what cannot be used is counted by its reason."""
 
-from collections import Counter
 from dataclasses import dataclass
 
 from companion.autopilots.state import AutopilotState
@@ -8,6 +7,7 @@ from companion.config.companion import SilentVehicleConfig
 from companion.core.data import Measurement
 from companion.core.reasons import Cause, Reason, sentence
 from companion.landing.state.step_data import VehicleInputs
+from companion.runtime.sample_intake import SampleIntake
 from companion.runtime.step_clock import StepClock
 from companion.vehicle.inputs import measurements_of
 from companion.vehicle.unit_watch import UnitWatch
@@ -15,7 +15,6 @@ from link.messages import CommandReply, PadGeometry
 from link.payloads.checks import PayloadError
 from link.payloads.json_messages import is_possible
 from link.program.text import printable
-from link.units import NS_PER_S
 from link.zenoh.keys import Keys
 
 _RECENT_NS = 5_000_000_000
@@ -94,7 +93,6 @@ _UNINVITED = "comes for a vehicle of which the configuration says that it tells 
 _UNPLACED = "of a time at which the drone's place or attitude is not known; is the detector's clock right?"
 _SIGHTING_UNPLACED = ("pad_pose", "unplaced")
 _FUTURE_MAX_NS = 500_000_000  # a stamp farther ahead comes from a clock that is wrong
-_SAMPLES_MAX_PER_S = 400  # of a key: twice the fastest inertial unit's; each is fused again when a late one comes
 
 
 class VehicleLink:
@@ -125,8 +123,7 @@ class VehicleLink:
         self._has_doubted = False  # something more of it since the last step
         self._placed_ns: int | None = None  # when the newest sighting came whose time was one of the drone's
         self._received: list[tuple[str, list[Measurement]]] = []  # on which key, since the last step
-        self._second_ns = 0  # in which samples are counted, when it began
-        self._heard: Counter[str] = Counter()
+        self._intake = SampleIntake()
 
     @property
     def knows_pad(self) -> bool:
@@ -146,8 +143,9 @@ class VehicleLink:
         if self.tells_nothing and key != self._keys.pad_pose:
             self.refuse(key.rsplit("/", 1)[-1], "uninvited", _UNINVITED)
             return
-        if self._is_flooded(key):
-            self.refuse(key.rsplit("/", 1)[-1], "flood", f"come more than {_SAMPLES_MAX_PER_S} times in a second")
+        refusal = self._intake.refusal(key, payload, self._clock.monotonic_ns)
+        if refusal is not None:
+            self.refuse(key.rsplit("/", 1)[-1], *refusal)
             return
         try:
             measurements = measurements_of(key, payload, self._keys, state, self._unit)
@@ -236,12 +234,3 @@ class VehicleLink:
         if self._placed_ns is not None and now_ns - self._placed_ns <= _RECENT_NS:
             return False
         return self.refusals.has_recent(*_SIGHTING_UNPLACED, now_ns)
-
-    def _is_flooded(self, key: str) -> bool:
-        """Count a sample; return whether there were more of its key within a second than any sensor makes."""
-        now_ns = self._clock.monotonic_ns
-        if now_ns - self._second_ns >= NS_PER_S:
-            self._second_ns = now_ns
-            self._heard.clear()
-        self._heard[key] += 1
-        return self._heard[key] > _SAMPLES_MAX_PER_S

@@ -5,6 +5,7 @@ import math
 import pytest
 
 from companion.autopilots.state import AutopilotState
+from companion.runtime.sample_intake import SAMPLES_MAX_PER_S, SampleIntake
 from companion.runtime.step_clock import StepClock
 from companion.runtime.vehicle_link import Refusals, VehicleLink
 from link.frames.rotations import quaternion_from_yaw
@@ -72,3 +73,42 @@ def test_step_hears_once_that_something_of_the_inertial_unit_is_found_to_be_wron
         told.append(vehicle.take(is_utc_known=False).has_doubted_unit)
     assert sum(told) == 1
     assert vehicle.refused_lately().startswith("yaw rate")
+
+
+def _clock() -> StepClock:
+    """A clock that shows the time of the sightings."""
+    clock = StepClock(50.0)
+    clock.advance(START_NS, START_NS, None, 0)
+    return clock
+
+
+def _counted(vehicle: VehicleLink, key: str, payload: bytes) -> int:
+    """Return how many measurements there are of a sample that comes now."""
+    vehicle.receive(key, payload, AutopilotState(history=(own_state(START_NS, (4.0, 5.0, 6.0)),)))
+    return len(vehicle.take(is_utc_known=False).measurements)
+
+
+def test_sample_that_is_published_twice_counts_once_and_is_told() -> None:
+    vehicle, payload = VehicleLink(KEYS, _clock(), None), cdr.encode(SIGHTING)
+    assert [_counted(vehicle, KEYS.pad_pose, payload) for _ in range(3)] == [1, 0, 0]
+    assert "published twice" in vehicle.refused_lately()
+
+
+def test_copies_take_no_room_of_what_comes_first() -> None:
+    vehicle = VehicleLink(KEYS, _clock(), None)
+    for index in range(SAMPLES_MAX_PER_S):
+        payload = cdr.encode(replace(SIGHTING, t_ns=START_NS + index))
+        assert [_counted(vehicle, KEYS.pad_pose, payload) for _ in range(2)] == [1, 0]
+    assert _counted(vehicle, KEYS.pad_pose, cdr.encode(replace(SIGHTING, t_ns=START_NS + SAMPLES_MAX_PER_S))) == 0
+
+
+@pytest.mark.parametrize(("after_s", "refused"), [(0.9, "again"), (1.5, "again"), (2.5, None)])
+def test_what_came_a_while_ago_is_forgotten(after_s: float, refused: str | None) -> None:
+    intake, began_ns = SampleIntake(), 7_000_000_000
+    assert intake.refusal(KEYS.fix, b"one", began_ns) is None
+    for later_s in (1.2, 2.4):
+        if later_s < after_s:
+            intake.refusal(KEYS.fix, b"another", began_ns + round(later_s * 1e9))
+    again = intake.refusal(KEYS.fix, b"one", began_ns + round(after_s * 1e9))
+    assert (again and again[0]) == refused
+    assert intake.refusal(KEYS.pad_pose, b"one", began_ns + round(after_s * 1e9)) is None
