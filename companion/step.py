@@ -9,6 +9,7 @@ import numpy as np
 
 from companion.config.companion import CompanionConfig
 from companion.integrity.heights import is_road_elsewhere, update_ground
+from companion.integrity.sightings import is_pad_sighted
 from companion.integrity.vehicle_data import update_course
 from companion.landing.flying import fly
 from companion.landing.orders import drive
@@ -132,6 +133,7 @@ def _situation(memory: StepMemory, pad: PadPath | None, inputs: StepInputs, syst
             rejected=vehicle.contradictions.rejected,
             is_pad_doubted=inputs.vehicle.is_pad_doubted,
             are_sightings_mixed=vehicle.sightings.are_mixed,
+            is_pad_sighted=is_pad_sighted(vehicle.sightings, inputs.monotonic_ns),
             has_unplaced_sightings=inputs.vehicle.has_unplaced_sightings,
             has_receiver_stepped=vehicle.phases.has_stepped,
             has_pad_stepped=vehicle.sightings.has_stepped,

@@ -80,6 +80,10 @@ class Reason(Enum):
         "pad not seen: its sightings are stamped when nobody knew where the drone was: see the detector's clock, and "
         "let it stamp each picture with the time of its exposure"
     )
+    SIGHTINGS_VAGUE = (
+        "pad is seen, but too seldom or too vaguely to be landed on: let the detector see it 5 times a second or more, "
+        "and see what covariance it states"
+    )
     SIGHTINGS_IMPOSSIBLE = (
         "sightings move the pad as no vehicle moves: let the detector stamp each picture with the time of its exposure,"
         " and see the camera's mounting"

@@ -184,9 +184,11 @@ _STEPPED_REMEDY = (
 
 
 def tell_unseen(s: Situation, config: CompanionConfig) -> Cause:
-    """Return why a pad that has to be seen is not, with what helps beside what is set already."""
+    """Return why a pad that has to be seen is not, or not well enough, with what helps beside what is set already."""
     if s.vehicle.has_unplaced_sightings:
         return Cause(Reason.SIGHTINGS_UNPLACED)
+    if s.vehicle.is_pad_sighted:
+        return Cause(Reason.SIGHTINGS_VAGUE)
     if config.silent_vehicle is not None:
         return Cause(Reason.PAD_NOT_SEEN)
     configured = config.integrity.receiver_frames

@@ -25,6 +25,7 @@ from link.records import replace
 
 _STDS = 3.0
 _CONFIRMING_MIN = 5  # of a camera that sees the pad at 5 Hz, the slowest that is worth following
+_SIGHTED_S = 2.0  # of one sighting a second the newest is counted within 1.5 s
 _CONFIRMING_S = 1.0  # over which drone and vehicle move against each other, and what is not the pad goes elsewhere
 
 
@@ -40,6 +41,7 @@ class SightingWatch(Struct, frozen=True, kw_only=True):
         since_ns: monotonic, when the first of these was counted; None without one.
         is_confirmed: they were enough, for long enough, since the place was not known; or a launch has told it.
         was_confirmed: sightings were so once; what looks then is known for a detector, and only has to look again.
+        seen_ns: monotonic, when accepted ones were counted last; None before the first.
     """
 
     counted: tuple[int, int] = (0, 0)
@@ -50,6 +52,7 @@ class SightingWatch(Struct, frozen=True, kw_only=True):
     since_ns: int | None = None
     is_confirmed: bool = False
     was_confirmed: bool = False
+    seen_ns: int | None = None
 
 
 def update_sightings(
@@ -61,7 +64,12 @@ def update_sightings(
     if accepted < 0 or rejected < 0:
         return SightingWatch(counted=counted, moves=health.moves_to_sightings)
     is_step = before.is_confirmed and health.moves_to_sightings > before.moves
-    before = replace(before, moves=health.moves_to_sightings, has_stepped=before.has_stepped or is_step)
+    before = replace(
+        before,
+        moves=health.moves_to_sightings,
+        has_stepped=before.has_stepped or is_step,
+        seen_ns=monotonic_ns if accepted else before.seen_ns,
+    )
     if rejected > config.integrity.rejected_share_max * (accepted + rejected):
         return replace(before, counted=counted, are_mixed=True, agreeing=0, since_ns=None)
     if accepted == 0:
@@ -90,7 +98,16 @@ def forget_agreement(watch: SightingWatch) -> SightingWatch:
 
 def forget_step(watch: SightingWatch) -> SightingWatch:
     """Return the watch of a drone that does not approach: a pad that has stepped is to be confirmed where it is now."""
-    return SightingWatch(counted=watch.counted, moves=watch.moves) if watch.has_stepped else watch
+    return (
+        replace(SightingWatch(), counted=watch.counted, moves=watch.moves, seen_ns=watch.seen_ns)
+        if watch.has_stepped
+        else watch
+    )
+
+
+def is_pad_sighted(watch: SightingWatch, monotonic_ns: int) -> bool:
+    """Return whether some sightings have been accepted within the last seconds, however few and vague."""
+    return watch.seen_ns is not None and (monotonic_ns - watch.seen_ns) * 1e-9 <= _SIGHTED_S
 
 
 def do_sightings_disagree(s: Situation, _: CompanionConfig) -> bool:

@@ -66,6 +66,7 @@ class VehicleNews(Struct, frozen=True, kw_only=True):
         rejected: the quantity that this is the share of; None of all together.
         is_pad_doubted: it describes another pad now than the one that is flown to.
         are_sightings_mixed: what the drone sees of the pad contradicts itself.
+        is_pad_sighted: the estimate has taken sightings of the last seconds, however few and vague.
         has_unplaced_sightings: what lately came of its pad is stamped when nobody knew where the drone was.
         has_receiver_stepped: its place, or the drone's, has stepped or slid since its phases were fixed.
         has_pad_stepped: it is seen elsewhere on the vehicle than where it was confirmed.
@@ -84,6 +85,7 @@ class VehicleNews(Struct, frozen=True, kw_only=True):
     rejected: Quantity | None = None
     is_pad_doubted: bool = False
     are_sightings_mixed: bool = False
+    is_pad_sighted: bool = False
     has_unplaced_sightings: bool = False
     has_receiver_stepped: bool = False
     has_pad_stepped: bool = False

@@ -57,7 +57,7 @@ def _no_retry(progress: Progress, s: Situation, config: CompanionConfig) -> Caus
     first = next((Cause(reason) for reason, holds_now in known.items() if holds_now), None)
     impossible = obstacle(progress.held, s, config)
     if first == Cause(Reason.NO_VEHICLE_DATA):
-        first = named_by_stamps(impossible) or tell_unheard(s, config)
+        first = named_by_stamps(impossible) or _why_unheard(progress, s, config)
     if not (is_heading_to_be_shown(s, config) and progress.cause.reason is not Reason.HEADING_UNKNOWN):
         first = first or why_unplaced(s)  # a heading that an alignment has waited for in vain is not waited for again
     if first is None and progress.cause.reason in _LASTING:
@@ -67,3 +67,9 @@ def _no_retry(progress: Progress, s: Situation, config: CompanionConfig) -> Caus
     first = first or impossible
     is_last = progress.interrupted_ns is None and progress.retries >= config.abort.retries_max
     return Cause(Reason.NO_RETRY_LEFT, (sentence(progress.cause),)) if first is None and is_last else first
+
+
+def _why_unheard(progress: Progress, s: Situation, config: CompanionConfig) -> Cause:
+    """Return why nothing is known of the vehicle: of one that is only seen, what its last sightings were wrong by."""
+    is_only_seen = config.silent_vehicle is not None
+    return progress.cause if is_only_seen and progress.cause.reason in _LASTING else tell_unheard(s, config)

@@ -319,3 +319,9 @@ def test_pad_of_which_all_sightings_are_refused_is_told_with_the_detectors_clock
     told = tell_unseen(changed(situation(), has_unplaced_sightings=True), CompanionConfig())
     assert told == Cause(Reason.SIGHTINGS_UNPLACED)
     assert "detector's clock" in sentence(told)
+
+
+def test_pad_that_is_seen_too_seldom_is_not_told_as_unseen() -> None:
+    told = tell_unseen(changed(situation(), is_pad_sighted=True), CompanionConfig())
+    assert told == Cause(Reason.SIGHTINGS_VAGUE)
+    assert "not seen" not in sentence(told)

@@ -19,6 +19,7 @@ from companion.integrity.sightings import (
     do_sightings_disagree,
     forget_agreement,
     forget_step,
+    is_pad_sighted,
     is_seen_elsewhere,
     update_sightings,
 )
@@ -145,6 +146,15 @@ def test_sightings_are_mixed_while_more_than_the_share_of_those_that_came_is_rej
     then = SightingWatch(counted=before)
     watch = update_sightings(then, health(before[0] + now[0], before[1] + now[1]), 0, CONFIG)
     assert watch.are_mixed is (now[1] > SHARE * sum(now))
+
+
+@pytest.mark.parametrize(("silent_s", "is_sighted"), [(0.0, True), (1.5, True), (2.5, False)])
+def test_pad_is_sighted_while_single_sightings_are_accepted(silent_s: float, *, is_sighted: bool) -> None:
+    seen_once = update_sightings(SightingWatch(), health(1, 0), 7_000_000_000, CONFIG)
+    now_ns = 7_000_000_000 + round(silent_s * 1e9)
+    watch = forget_step(update_sightings(seen_once, health(1, 3), now_ns, CONFIG))
+    assert is_pad_sighted(watch, now_ns) is is_sighted
+    assert not is_pad_sighted(update_sightings(SightingWatch(), health(0, 3), now_ns, CONFIG), now_ns)
 
 
 def test_estimate_that_begins_anew_is_counted_anew() -> None:

@@ -84,3 +84,12 @@ def test_a_climb_without_a_sighting_ends_with_what_to_see_to_and_not_with_data_t
     assert missing_for_sortie(Event.RETURN, None, facts, SILENT, None) == Cause(reason)
     told = decide(climb, ControlMemory(), facts, CONFIG)
     assert told == (Event.CLEAR_TO_HOLD, Cause(Reason.NO_VEHICLE_DATA))
+
+
+@pytest.mark.parametrize("reason", [Reason.SIGHTINGS_IMPOSSIBLE, Reason.SIGHTINGS_DISAGREE, Reason.PAD_NOT_SEEN])
+def test_climb_from_wrong_sightings_ends_with_what_they_were_wrong_by_though_the_pad_is_out_of_sight(
+    reason: Reason,
+) -> None:
+    facts = changed(situation(CONFIG.abort.height_m), fix_age_s=CONFIG.abort.fix_age_max_s + 0.1)
+    climb = replace(progress(Phase.ABORT, CONFIG.abort.time_limit_s + 0.1), cause=Cause(reason))
+    assert decide(climb, ControlMemory(), facts, SILENT) == (Event.CLEAR_TO_HOLD, Cause(reason))
