@@ -181,8 +181,11 @@ def _at_speeds(track: str, table: Table) -> dict[str, Table]:
 def _file_table(path: Path) -> Table:
     """Return the table of a user's file, laid over its base."""
     table = read_toml(path)
-    base = table.pop("base", None)
-    return table if base is None else merge(_find_table(str(base), f"{path}: base: "), table)
+    if (base := table.pop("base", None)) is None:
+        return table
+    below, track = _find_table(str(base), f"{path}: base: "), table.get("track")
+    is_other = isinstance(track, dict) and track.get("kind") not in {None, below["track"]["kind"]}
+    return merge(below | {"track": {}} if is_other else below, table)  # another kind has other keys
 
 
 def _resolve(table: Table, source: str) -> Table:

@@ -163,6 +163,17 @@ def test_presets_behind_a_file_replace_its_sections(tmp_path: Path) -> None:
     assert scenario.track.speed_m_s == 8.0
 
 
+def test_track_of_another_kind_takes_nothing_from_that_of_the_base(tmp_path: Path) -> None:
+    path = written(
+        tmp_path,
+        'base = "straight_5"\nwind = "gust"\n[track]\nkind = "waypoints"\n'
+        "waypoints_m = [[-40.0, 0.0], [60.0, 5.0]]\nspeeds_m_s = [4.0, 6.0]\n",
+    )
+    scenario = load_scenario(str(path))
+    assert scenario.track.kind == "waypoints"
+    assert scenario.wind == load_scenario("straight_5+wind=gust").wind
+
+
 def test_file_with_a_base_changes_what_it_names(tmp_path: Path) -> None:
     text = (
         'base = "straight_5"\n[track]\nspeed_m_s = 6.5\n[sensors]\npreset = "nominal"\n[sensors.fix]\nrate_hz = 20.0\n'
