@@ -86,7 +86,7 @@ class Reason(Enum):
     )
     SIGHTINGS_IMPOSSIBLE = (
         "sightings move the pad as no vehicle moves: let the detector stamp each picture with the time of its exposure,"
-        " and see the camera's mounting"
+        " and see the camera's mounting and the covariance that is stated"
     )
     VEHICLE_OUTRUNS = "vehicle faster than the limit"
     STATION_OUTRUNS = "vehicle turns too fast for a station so far from it: give a nearer one, or in the frame north"

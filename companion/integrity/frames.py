@@ -201,6 +201,11 @@ def tell_unheard(s: Situation, config: CompanionConfig) -> Cause:
     return Cause(Reason.NO_VEHICLE_DATA) if config.silent_vehicle is None else tell_unseen(s, config)
 
 
+def tell_uncertain(s: Situation, config: CompanionConfig) -> Cause:
+    """Return why the pad's place is uncertain: of a vehicle that tells nothing, why it is not seen."""
+    return Cause(Reason.VEHICLE_UNCERTAIN) if config.silent_vehicle is None else tell_unseen(s, config)
+
+
 def _was_unfixed(phases: FixedPhases, monotonic_ns: int) -> bool:
     """Return whether the drone's receiver was without a fix lately."""
     return phases.unfixed_ns is not None and not _is_held(phases.unfixed_ns, monotonic_ns)

@@ -110,6 +110,11 @@ def is_pad_sighted(watch: SightingWatch, monotonic_ns: int) -> bool:
     return watch.seen_ns is not None and (monotonic_ns - watch.seen_ns) * 1e-9 <= _SIGHTED_S
 
 
+def has_nothing_but_unplaced_sightings(s: Situation, c: CompanionConfig) -> bool:
+    """Return whether a vehicle that tells nothing will not be found, because all sightings are stamped wrong."""
+    return c.silent_vehicle is not None and s.vehicle.has_unplaced_sightings
+
+
 def do_sightings_disagree(s: Situation, _: CompanionConfig) -> bool:
     """Return whether the last sightings contradict each other, or those that confirmed the pad's place."""
     return s.vehicle.are_sightings_mixed or s.vehicle.has_pad_stepped

@@ -6,7 +6,7 @@ from companion.config.companion import CompanionConfig
 from companion.config.planning import LandingStyle
 from companion.core.reasons import Cause, Reason
 from companion.integrity.contradictions import contradicts_itself, tell_rejected
-from companion.integrity.frames import tell_unseen
+from companion.integrity.frames import tell_uncertain, tell_unseen
 from companion.integrity.heights import is_seen_too_near
 from companion.integrity.sightings import are_sightings_impossible, do_sightings_disagree, is_seen_elsewhere
 from companion.integrity.stamps import have_stamps_stepped, is_stamped_ahead
@@ -161,6 +161,7 @@ ABORTS = (
         phases=NEAR_PHASES,
         is_true=is_uncertain,
         hold_s=lambda _, c: c.abort.cone_hold_s,
+        cause=tell_uncertain,
     ),
     Condition(
         reason=Reason.OFFSET_UNKNOWN,

@@ -10,6 +10,7 @@ from companion.config.companion import CompanionConfig
 from companion.core.reasons import Cause, Reason
 from companion.integrity.contradictions import contradicts_itself, tell_rejected
 from companion.integrity.heights import road_above_ground_m, road_distance_m
+from companion.integrity.sightings import has_nothing_but_unplaced_sightings
 from companion.integrity.stamps import (
     are_fixes_rare,
     are_stamps_late,
@@ -43,6 +44,7 @@ _ROUNDING = 1e-6
 _BEFORE_AN_ARMING = frozenset({Phase.IDLE, Phase.SECURED, Phase.PILOT})
 _BEFORE_A_FLIGHT = frozenset({Phase.IDLE, Phase.SECURED, Phase.PILOT, Phase.HOLD, Phase.WAITING})
 _BEFORE_A_CHASE = _BEFORE_A_FLIGHT | {Phase.ABORT}
+_WAITS = frozenset({Phase.WAITING})
 _BEFORE_A_RETRY = frozenset({Phase.WAITING, Phase.HOLD, Phase.ABORT})
 _BEFORE_ANY_CHASE = _BEFORE_A_CHASE | {Phase.FOLLOW, Phase.RETURN}
 """A sortie comes home on a low battery as well: it has nowhere else to land."""
@@ -219,7 +221,8 @@ OBSTACLES = (
         is_true=contradicts_itself,
         cause=tell_rejected(Reason.MEASUREMENTS_REJECTED),
     ),
-    *(replace(silence, phases=frozenset({Phase.WAITING})) for silence in AUTOPILOT_SILENT),
+    *(replace(silence, phases=_WAITS) for silence in AUTOPILOT_SILENT),
+    Condition(reason=Reason.SIGHTINGS_UNPLACED, phases=_WAITS, is_true=has_nothing_but_unplaced_sightings),
     EMPTY,
     Condition(reason=Reason.PAD_CHANGED, phases=_BEFORE_ANY_CHASE, is_true=is_pad_doubted),
     Condition(reason=Reason.PAD_TOO_SMALL, phases=_BEFORE_ANY_CHASE, is_true=_is_too_narrow, cause=_too_narrow),

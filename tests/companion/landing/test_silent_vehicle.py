@@ -10,6 +10,7 @@ from companion.core.reasons import Cause, Reason
 from companion.landing.commands import missing_for_sortie
 from companion.landing.decisions.entries import Decision, update_held
 from companion.landing.decisions.events import decide
+from companion.landing.decisions.feasibility import OBSTACLES, obstacle
 from companion.landing.state.memory import ControlMemory, Held
 from companion.landing.steering.following_height import chase_height_m
 from companion.situation.phases import Event, Phase
@@ -93,3 +94,31 @@ def test_climb_from_wrong_sightings_ends_with_what_they_were_wrong_by_though_the
     facts = changed(situation(CONFIG.abort.height_m), fix_age_s=CONFIG.abort.fix_age_max_s + 0.1)
     climb = replace(progress(Phase.ABORT, CONFIG.abort.time_limit_s + 0.1), cause=Cause(reason))
     assert decide(climb, ControlMemory(), facts, SILENT) == (Event.CLEAR_TO_HOLD, Cause(reason))
+
+
+@pytest.mark.parametrize(("is_silent", "told"), [(True, Cause(Reason.SIGHTINGS_UNPLACED)), (False, None)])
+def test_drone_that_waits_for_a_vehicle_whose_sightings_are_stamped_wrong_says_so(
+    told: Cause | None, *, is_silent: bool
+) -> None:
+    facts, config = changed(situation(), has_unplaced_sightings=True), SILENT if is_silent else CONFIG
+    held = {one.reason: 0 for one in OBSTACLES if Phase.WAITING in one.phases and one.is_true(facts, config)}
+    assert obstacle(held, facts, config) == told
+
+
+@pytest.mark.parametrize(
+    ("config", "is_sighted", "reason"),
+    [
+        (CONFIG, False, Reason.VEHICLE_UNCERTAIN),
+        (SILENT, False, Reason.PAD_NOT_SEEN),
+        (SILENT, True, Reason.SIGHTINGS_VAGUE),
+    ],
+)
+def test_place_that_nobody_tells_is_uncertain_because_it_is_not_seen(
+    config: CompanionConfig, reason: Reason, *, is_sighted: bool
+) -> None:
+    facts = changed(situation(pad=pad_at(std_m=CONFIG.abort.position_std_max_m + 0.1)), is_pad_sighted=is_sighted)
+    held = update_held({}, Phase.ALIGN, facts, config)
+    now = later(facts, round(config.abort.cone_hold_s * 1e9))
+    held = update_held(held, Phase.ALIGN, now, config)
+    decision = decide(replace(progress(Phase.ALIGN, 0.0), held=held), ControlMemory(), now, config)
+    assert decision == (Event.UNSAFE, Cause(reason))
