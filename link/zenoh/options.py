@@ -47,12 +47,22 @@ class ZenohOptions:
         if self.mode is not None and self.mode not in MODES:
             raise UserError(f"--mode {self.mode!r} does not exist: choose {', '.join(MODES)}")
         for endpoint in self.connect:
-            _check_endpoint("--connect", endpoint, port_min=1)
+            check_endpoint("--connect", endpoint, port_min=1)
         for endpoint in self.listen:
-            _check_endpoint("--listen", endpoint, port_min=0)
+            check_endpoint("--listen", endpoint, port_min=0)
 
 
-def _check_endpoint(option: str, endpoint: str, *, port_min: int) -> None:
+def check_endpoint(option: str, endpoint: str, *, port_min: int) -> None:
+    """Find out whether what a user wrote is an endpoint.
+
+    Args:
+        option: by which it was given.
+        endpoint: such as `tls/192.168.4.1:7447`.
+        port_min: the least port; 0 is any free one.
+
+    Raises:
+        UserError: it is none.
+    """
     protocol, slash, address = endpoint.partition("/")
     if protocol in _OTHER_PROTOCOLS and address:
         return

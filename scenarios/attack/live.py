@@ -3,6 +3,8 @@
 The operator's own session watches; the attacker has a session without a certificate, and a socket of its own.
 """
 
+import re
+import socket
 import time
 from collections.abc import Iterator
 from contextlib import ExitStack, suppress
@@ -16,6 +18,7 @@ from link.transports.device import parse_device
 from link.transports.opening import open_transport
 from link.transports.transport import Transport
 from link.zenoh.keys import Keys
+from link.zenoh.options import check_endpoint
 from link.zenoh.session import ZenohOptions, ZenohSession, open_session
 from scenarios.attack.attempt import Attempt
 from scenarios.attack.crafted import CRAFTED, datagram_of
@@ -30,8 +33,10 @@ _FLOODS_S = 2.0  # before an abort is asked for
 _ABORTS = 5
 _LISTENS_S = 1.0
 _ORDER_S = 2.0
+_REACHED_S = 3.0  # of a host that answers nothing at all; a refusal comes at once
 _BOOT_MS = 60_000
 _BATTERY_LOST = 0.5  # the forged one has a hundredth left
+_CONNECTING = ("tcp", "tls", "ws")  # the others begin nothing of which it could be told
 _NOTHING = "changes nothing"
 _GOES_ON = f"the status goes on within {_GAP_MAX_S:g} s"
 
@@ -92,10 +97,13 @@ def attempts(options: ZenohOptions, keys: Keys, *, device: str | None, stranger:
         stranger: endpoint at which somebody without a certificate tries; None leaves that out.
 
     Raises:
-        UserError: no companion is there, its motors run, or it hears no autopilot.
+        UserError: no companion is there, its motors run, or it hears no autopilot; nothing listens for the stranger.
     """
+    # A mistake is told before anybody is waited for.
     if device is not None:
-        parse_device(device)  # a mistake is told before anybody is waited for
+        parse_device(device)
+    if stranger is not None:
+        _check_reached(stranger)
     with ExitStack() as stack:
         zenoh = stack.enter_context(open_session(options))
         watch = Watch(zenoh, keys)
@@ -111,6 +119,22 @@ def attempts(options: ZenohOptions, keys: Keys, *, device: str | None, stranger:
         client = stack.enter_context(open_session(options))
         yield _by_large_orders(client, keys, watch)
         yield _by_flood(zenoh, client, keys)
+
+
+def _check_reached(endpoint: str) -> None:
+    """Find out whether something listens where the stranger tries: who gets no connection elsewhere shows nothing."""
+    check_endpoint("--stranger", endpoint, port_min=1)
+    protocol, _, address = endpoint.partition("/")
+    if protocol not in _CONNECTING:
+        return
+    host, _, port = re.split("[?#]", address)[0].rpartition(":")
+    try:
+        socket.create_connection((host.strip("[]"), int(port)), _REACHED_S).close()
+    except OSError as error:
+        raise UserError(
+            f"--stranger {endpoint}: nothing listens there ({error.strerror or error}); name where the vehicle or the"
+            " router listens"
+        ) from error
 
 
 def _by_stranger(endpoint: str, keys: Keys) -> Attempt:

@@ -51,6 +51,7 @@ MISTAKES = [
     ("scenarios", "world straight_5 --mavlink foo", ["'foo'", "udpin:HOST:PORT, udpout:HOST:PORT"]),
     ("ground-vehicle", "--nmea udpin:0.0.0.0", ["'udpin:0.0.0.0'", "did you mean udpin:0.0.0.0:10110?"]),
     ("scenarios", "attack --mavlink foo", ["'foo'", "udpin:HOST:PORT, udpout:HOST:PORT"]),
+    ("scenarios", "attack --stranger 127.0.0.1:7447", ["--stranger '127.0.0.1:7447'", "tcp/127.0.0.1:7447"]),
     # endpoints and names on Zenoh
     ("companion", f"{FREE} -e tpc/127.0.0.1:7447", ["--connect 'tpc/127.0.0.1:7447'", "tcp/127.0.0.1:7447"]),
     ("companion", f"{FREE} -m pear", ["--mode 'pear'", "peer, client, router"]),
