@@ -45,7 +45,7 @@ def approach_lines(result: Mapping[str, Any]) -> Iterator[str]:
 
 
 def _height(one: Mapping[str, Any]) -> str:
-    return f"{'-':>8}" if one["lowest_m"] is None else f"{one['lowest_m']:6.2f} m"
+    return f"{'-':>8}" if one["lowest_m"] is None else f"{one['lowest_m']:z6.2f} m"
 
 
 def _why(one: Mapping[str, Any]) -> str:
@@ -119,7 +119,7 @@ def _progress_line(recording: Recording, status: LandingStatus, factor: float) -
     if status.relative_position_enu_m is not None and status.relative_velocity_enu_m_s is not None:
         x_m, y_m, z_m = status.relative_position_enu_m
         vx_m_s, vy_m_s, _ = status.relative_velocity_enu_m_s
-        parts.append(f"distance {(x_m**2 + y_m**2) ** 0.5:6.2f} m  height {z_m:5.2f} m")
+        parts.append(f"distance {(x_m**2 + y_m**2) ** 0.5:6.2f} m  height {z_m:z5.2f} m")
         parts.append(f"relative speed {(vx_m_s**2 + vy_m_s**2) ** 0.5:5.2f} m/s")
     parts.append(status.reason)
     return "  ".join(parts)

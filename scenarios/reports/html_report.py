@@ -83,10 +83,8 @@ def _campaign_page(folder: Path) -> str:
         title=f"Campaign {folder.resolve().name}",
         verdict=f"{landed} of {len(rows)} landings reached S3",
         summary=summary_sheets(summarize(rows)),
-        worlds=[
-            *(worlds_sheets(report) for report in worlds_report(rows, plan.populations)),
-            reliability_sheets(reliability(rows)),
-        ],
+        worlds=[worlds_sheets(report) for report in worlds_report(rows, plan.populations)],
+        forecasts=reliability_sheets(reliability(rows)),
         figures=_captions(campaign_figures(plan, rows)),
         scenarios={name: dump_toml(cell) for name, cell in plan.flown.items()},
         versions={"commit": plan.commit or "not known"} | plan.versions,

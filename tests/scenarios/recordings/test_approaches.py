@@ -157,6 +157,12 @@ def test_lines_of_a_landing_are_those_of_its_approaches_only() -> None:
     assert len(list(approach_lines(table))) == 2
 
 
+def test_height_that_is_nothing_has_no_sign() -> None:
+    table = result(approaches(CHASE, ALIGN, DESCEND), "descend", Cause(Reason.ALIGNED))
+    table["approaches"][0]["lowest_m"] = -0.004
+    assert " lowest 0.00 m " in " ".join(list(approach_lines(table))[1].split())
+
+
 def test_run_at_its_time_limit_ended_in_what_was_waited_for_before_it_was_called_off() -> None:
     waits = status(1.0, Phase.WAITING, Reason.HEADING_UNKNOWN)
     recording = Recording(statuses=[waits, status(2.0, Phase.HOLD, Reason.OPERATOR_ABORTS)])

@@ -11,13 +11,13 @@ from scenarios.reports.html_report import write_report
 from tests.scenarios.campaigns.test_worlds_report import ROWS
 
 
-def campaign(folder: Path) -> Path:
-    """Write the folder of a campaign of a hundred worlds."""
-    plan = make_plan(["world:urban"], first_seed=1, seeds=len(ROWS), config=None)
+def campaign(folder: Path, cell: str = "world:urban") -> Path:
+    """Write the folder of a campaign of a hundred landings, of worlds unless told."""
+    plan = make_plan([cell], first_seed=1, seeds=len(ROWS), config=None)
     create_folder(folder, plan)
     with open_journal(folder) as journal:
         for row in ROWS:
-            journal.add(Flown(row=row, wall_s=2.0))
+            journal.add(Flown(row=row | {"cell": cell}, wall_s=2.0))
         journal.write_results()
     return folder
 
@@ -32,3 +32,10 @@ def test_page_shows_rates_causes_and_the_worst_and_opens_offline(tmp_path: Path)
     assert "Landings of the worlds that were unsafe" in page
     assert page.count("<svg") == 3
     assert 'src="http' not in page
+
+
+@pytest.mark.slow
+def test_page_about_a_campaign_on_a_road_has_no_worlds(tmp_path: Path) -> None:
+    page = write_report(campaign(tmp_path / "road", "straight_5"), None).read_text(encoding="utf-8")
+    assert "100 landings" in page
+    assert "<h2>Worlds</h2>" not in page
