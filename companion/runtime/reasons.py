@@ -43,8 +43,8 @@ def reasons(
     for name in wanted:
         one = helps[name]
         sys.stdout.write(f"{name}: {_PLACE.sub('...', one.reason.value)}\n")
-        for text in (f"({one.group}) {one.meaning}", one.remedy):
-            sys.stdout.write(textwrap.indent(textwrap.fill(text, _WIDTH), "  ") + ("\n" if text else ""))
+        for text in (f"({one.group}) {one.meaning}", *([f"Look at, or do: {one.remedy}"] if one.remedy else [])):
+            sys.stdout.write(textwrap.indent(textwrap.fill(text, _WIDTH), "  ") + "\n")
 
 
 def _named(names: Sequence[str], helps: Mapping[str, ReasonHelp]) -> list[str]:

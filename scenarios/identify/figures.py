@@ -100,6 +100,6 @@ def _vertical_figures(flight: Flight) -> dict[str, float]:
     begin_s, end_s = span_s(Name.HEIGHT_STEP)[0], span_s(Name.HEIGHT_BACK)[1]
     steps = (grid_s >= begin_s) & (grid_s < end_s)
     return {
-        "height steps: largest acceleration m/s2": float(np.percentile(np.abs(acceleration[steps]), 98)),
+        "height steps: largest acceleration m/s^2": float(np.percentile(np.abs(acceleration[steps]), 98)),
         "height steps: largest jerk m/s3": float(np.percentile(np.abs(jerk[steps]), 98)),
     }

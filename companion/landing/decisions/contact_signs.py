@@ -75,7 +75,7 @@ def signs_text(signs: Signs) -> str:
         _part(signs.height_m, "m over the pad"),
         _part(signs.setpoint_below_m, "m above the setpoint"),
         _part(signs.climb_m_s, "m/s up"),
-        _part(signs.acceleration_up_m_s2, "m/s2 up"),
+        _part(signs.acceleration_up_m_s2, "m/s^2 up"),
         _part(signs.range_height_m, "m by range finder"),
         {None: "", True: "autopilot landed", False: "autopilot not landed"}[signs.landed],
     ]

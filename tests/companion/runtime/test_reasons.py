@@ -32,6 +32,14 @@ def test_station_that_is_absurdly_far_away_is_refused_in_one_readable_line() -> 
     assert "100.02 m from" in sentence(Cause(Reason.STATION_TOO_FAR, (100.02, 100.0)))
 
 
+def test_what_to_do_is_told_as_that_and_not_where_there_is_nothing(capsys: pytest.CaptureFixture[str]) -> None:
+    reasons(["TOO_FAST_NEAR_PAD", "OPERATOR_HOLDS"])
+    lines = capsys.readouterr().out.splitlines()
+    assert [line for line in lines if "Look at, or do" in line] == [
+        "  Look at, or do: Drive evenly, without hard brakes and turns; fly in less wind."
+    ]
+
+
 def test_several_names_are_told_in_their_order(capsys: pytest.CaptureFixture[str]) -> None:
     assert told(capsys, "CONTACT", "OFFSET_UNKNOWN") == ["CONTACT", "OFFSET_UNKNOWN"]
 

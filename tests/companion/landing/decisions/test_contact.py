@@ -301,7 +301,7 @@ def test_decision_is_described_by_its_signs() -> None:
     )
     drone = replace(drone_at(-0.02, 0.0, (0.0, 0.0, 0.11), pad=pad_at()), acceleration_up_m_s2=-0.25)
     facts = replace(on_pad(), drone=drone, autopilot=replace(on_pad().autopilot, landed=True))
-    assert "0.11 m/s up, -0.25 m/s2 up, 0.01 m by range finder, autopilot landed" in signs_text(
+    assert "0.11 m/s up, -0.25 m/s^2 up, 0.01 m by range finder, autopilot landed" in signs_text(
         signs_of(facts, TOUCHDOWN)
     )
     unknown = replace(on_pad(), drone=None, autopilot=replace(on_pad().autopilot, landed=None))
