@@ -55,9 +55,10 @@ def _allowed(parameter: Any) -> str:
     described = parameter.type_descriptor
     if parameter.nargs > 1 and set(get_args(described.annotation)) <= {*_NUMBERS}:
         return f"{parameter.nargs} numbers, {parameter.metavar}"
-    if described.annotation not in _NUMBERS:
+    each = get_args(described.annotation)[0] if parameter.multiple else described.annotation
+    if each not in _NUMBERS:
         return ""
-    kind = "a whole number" if described.annotation is int else "a number"
+    kind = "a whole number" if each is int else "a number"
     low, high = described.parameter_info.min, described.parameter_info.max
     if low is None and high is None:
         return kind

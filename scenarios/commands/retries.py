@@ -73,10 +73,12 @@ def retries_command(
     if firmware is not None and firmware not in FIRMWARES:
         raise UserError(f"--firmware is one of {', '.join(FIRMWARES)}, not '{firmware}'")
     firmwares = tuple(one for one in FIRMWARES if firmware in {None, one})
-    for name in names or ():
-        load_scenario(with_firmware(name, firmwares[0]))  # tells what is wrong with it before anything is flown
+    heights_m = height or _HEIGHTS_M
+    for name in names or _SCENARIOS:
+        scenario = load_scenario(with_firmware(name, firmwares[0]))  # tells what is wrong before anything is flown
+        _check_heights(heights_m, name, scenario.system.companion.chase.height_m)
     drawn = range(first_seed, first_seed + seeds)
-    groups = _groups(names or _SCENARIOS, firmwares, height or _HEIGHTS_M, drawn)
+    groups = _groups(names or _SCENARIOS, firmwares, heights_m, drawn)
     found: dict[RetryCase, Retried] = {}
     try:
         _fly(groups, found, workers)
@@ -86,6 +88,12 @@ def retries_command(
         raise
     rows = _write(groups, found, as_json=as_json)
     return 0 if all(row["right"] for row in rows) else 1
+
+
+def _check_heights(heights_m: Sequence[float], name: str, chased_m: float) -> None:
+    """Refuse heights at which no descent is: it begins at that of the chase."""
+    if (highest_m := max(heights_m)) > chased_m:
+        raise UserError(f"--height {highest_m:g}: on {name} a descent begins {chased_m:g} m over the pad; give less")
 
 
 def _groups(

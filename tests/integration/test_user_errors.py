@@ -119,6 +119,7 @@ MISTAKES = [
     ("scenarios", "run straight_5 --speed nan", ["--speed nan", "a number from 0.1 to 50"]),
     ("companion", "--timeout nan", ["--timeout nan", "a number, 0 or more"]),
     ("scenarios", "run straight_5 --seed 1.5", ["--seed 1.5", "a whole number, 0 or more"]),
+    ("scenarios", "retries --height 1 --height 4", ["--height 4", "begins 3.5 m over the pad"]),
     ("scenarios", "bench --pairs -3", ["--pairs -3", "--against FOLDER"]),
     ("ground-vehicle", "--nmea udpin:127.0.0.1:0 --seed 0 --timeout 60", ["--seed and --timeout:", "--scenario"]),
     ("ground-vehicle", "--gpsd 127.0.0.1 --use-sim-time", ["--use-sim-time:", "leave that out"]),

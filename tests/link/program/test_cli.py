@@ -6,6 +6,7 @@ import time
 from dataclasses import asdict
 from importlib.metadata import version
 from pathlib import Path
+from typing import Annotated
 
 import pytest
 import typer
@@ -28,9 +29,10 @@ def program(seen: Seen) -> App:
         names: NameArguments,
         endpoints: ZenohArguments,
         seed: int = 0,
+        height: Annotated[list[float] | None, typer.Option("--height", min=0.05)] = None,
     ) -> None:
         """Record the options."""
-        seen.append(asdict(names) | asdict(endpoints) | {"seed": seed})
+        seen.append(asdict(names) | asdict(endpoints) | {"seed": seed, "height": height})
 
     @app.command()
     def fail(code: int = 0) -> int:
@@ -72,6 +74,7 @@ def test_options_left_out_are_none() -> None:
         ("run --sed 3", "--seed"),
         ("run --seed three", "--seed three: must be a whole number (see tool run -h)"),
         ("run --seed", "--seed"),
+        ("run --height 1 --height 0.01", "--height 0.01: must be a number, 0.05 or more (see tool run -h)"),
         ("run extra", "extra"),
     ],
 )
