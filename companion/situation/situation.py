@@ -5,6 +5,7 @@ import math
 from msgspec import Struct, structs
 
 from companion.autopilots.driver import AutopilotView
+from companion.config.companion import CompanionConfig
 from companion.config.landing import ChaseConfig
 from companion.core.data import Array, FlightLimits, Quantity, Rival
 from companion.planning.guidance import ReferenceState
@@ -208,3 +209,8 @@ def vehicle_stands(situation: Situation, config: ChaseConfig) -> bool:
     std_m_s = situation.vehicle.speed_std_m_s
     unsure_m_s = config.parked_speed_stds * std_m_s if math.isfinite(std_m_s) else 0.0
     return situation.pad.ground_speed_m_s < max(config.parked_speed_m_s, unsure_m_s)
+
+
+def driving_hold_s(_: Situation, config: CompanionConfig) -> float:
+    """Return for how long what is said of the vehicle's driving must be true: an estimate that has just begun jumps."""
+    return config.chase.driving_hold_s

@@ -29,7 +29,7 @@ from companion.landing.decisions.contact_trial import hears_setpoints
 from companion.landing.decisions.standing import has_touched, tell_blown_off, would_blow_off
 from companion.landing.steering.losing import LOST_FOR_S
 from companion.situation.phases import LANDING_PHASES, NEAR_PHASES, Phase
-from companion.situation.situation import Approach, Situation
+from companion.situation.situation import Approach, Situation, driving_hold_s
 from companion.vehicle.pad_reach import cone_radius_m, is_unseen, is_vague
 
 _DESCENT = frozenset({Phase.DESCEND})
@@ -238,7 +238,7 @@ ABORTS = (
         reason=Reason.VEHICLE_OUTRUNS,
         phases=LANDING_PHASES,
         is_true=outruns,
-        hold_s=lambda _, c: c.chase.driving_hold_s,
+        hold_s=driving_hold_s,
     ),
     Condition(reason=Reason.WOULD_BLOW_OFF, phases=_DESCENT, is_true=would_blow_off, cause=tell_blown_off),
     *MISSED,

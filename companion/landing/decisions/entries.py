@@ -22,7 +22,7 @@ from companion.landing.decisions.conditions import (
 from companion.landing.decisions.passing import distance_m, is_too_low
 from companion.landing.state.memory import Held
 from companion.situation.phases import Event, Phase
-from companion.situation.situation import Situation, vehicle_stands
+from companion.situation.situation import Situation, driving_hold_s, vehicle_stands
 
 Decision = tuple[Event, Cause]
 """What happens, and why."""
@@ -108,9 +108,7 @@ NOT_SEEN = Condition(
     anew_max=lambda c: c.descent.unseen.anew_max,
 )
 
-DRIVES = Condition(
-    reason=Reason.VEHICLE_DRIVES, phases=_WAITING, is_true=_drives, hold_s=lambda _, c: c.chase.driving_hold_s
-)
+DRIVES = Condition(reason=Reason.VEHICLE_DRIVES, phases=_WAITING, is_true=_drives, hold_s=driving_hold_s)
 """Without this no vehicle is taken to pass."""
 
 VEHICLE_STANDS = Condition(

@@ -32,7 +32,7 @@ from companion.landing.decisions.conditions import (
 from companion.landing.state.memory import Held
 from companion.landing.steering.following_height import chase_floor_m, climb_m, vague_height_m
 from companion.situation.phases import Phase
-from companion.situation.situation import Situation
+from companion.situation.situation import Situation, driving_hold_s
 from companion.vehicle.pad_reach import is_too_small, pad_width_min_m
 from link.records import replace
 
@@ -105,7 +105,7 @@ EMPTY = Condition(
     reason=Reason.BATTERY_LOW,
     phases=_BEFORE_A_CHASE | {Phase.ON_DECK},
     is_true=_is_empty,
-    hold_s=lambda _, c: c.chase.driving_hold_s,
+    hold_s=driving_hold_s,
     cause=_empty,
 )
 """A drone begins no flight and no approach on a battery at its reserve."""
@@ -167,7 +167,6 @@ def _high(s: Situation, c: CompanionConfig) -> Cause:
     return Cause(Reason.ROOF_TOO_HIGH, (told_m - more_m, told_m, told))
 
 
-# An estimate that has just begun jumps: what is said of the vehicle must hold for a while.
 OBSTACLES = (
     Condition(reason=Reason.DRONE_TAKEN, phases=_BEFORE_ANY_CHASE, is_true=is_drone_taken),
     Condition(reason=Reason.SYSTEM_ID_SHARED, phases=_BEFORE_AN_ARMING, is_true=lambda s, _: s.autopilot.is_id_shared),
@@ -183,14 +182,14 @@ OBSTACLES = (
         reason=Reason.STAMPS_LATE,
         phases=_BEFORE_A_CHASE,
         is_true=are_stamps_late,
-        hold_s=lambda _, c: c.chase.driving_hold_s,
+        hold_s=driving_hold_s,
         cause=tell_stamped_late,
     ),
     Condition(
         reason=Reason.FIXES_RARE,
         phases=_BEFORE_A_CHASE,
         is_true=are_fixes_rare,
-        hold_s=lambda _, c: c.chase.driving_hold_s,
+        hold_s=driving_hold_s,
         cause=tell_rare,
     ),
     Condition(reason=Reason.STAMPS_STEPPED, phases=_BEFORE_A_RETRY, is_true=have_stamps_stepped),
@@ -198,14 +197,14 @@ OBSTACLES = (
         reason=Reason.VEHICLE_TOO_FAST,
         phases=_BEFORE_ANY_CHASE,
         is_true=_is_too_fast,
-        hold_s=lambda _, c: c.chase.driving_hold_s,
+        hold_s=driving_hold_s,
         cause=_too_fast,
     ),
     Condition(
         reason=Reason.VEHICLE_TOO_FAR,
         phases=_BEFORE_ANY_CHASE,
         is_true=_is_too_far,
-        hold_s=lambda _, c: c.chase.driving_hold_s,
+        hold_s=driving_hold_s,
         cause=_too_far,
     ),
     Condition(
@@ -230,14 +229,14 @@ OBSTACLES = (
         reason=Reason.ROAD_ELSEWHERE,
         phases=_BEFORE_ANY_CHASE,
         is_true=_is_elsewhere,
-        hold_s=lambda _, c: c.chase.driving_hold_s,
+        hold_s=driving_hold_s,
         cause=_elsewhere,
     ),
     Condition(
         reason=Reason.ROOF_TOO_HIGH,
         phases=_BEFORE_A_FLIGHT,
         is_true=_is_high,
-        hold_s=lambda _, c: c.chase.driving_hold_s,
+        hold_s=driving_hold_s,
         cause=_high,
     ),
 )

@@ -23,7 +23,7 @@ from companion.landing.sortie.way_home import warn_of_way_home, way_home_due
 from companion.landing.state.memory import ControlMemory, Progress
 from companion.landing.steering.following_height import chase_floor_m
 from companion.situation.phases import Event, Phase
-from companion.situation.situation import Situation
+from companion.situation.situation import Situation, driving_hold_s
 from companion.sortie.memory import UNTOLD, SortieMemory, update_battery
 from companion.sortie.station import ahead_rad
 from link.messages import StationFrame
@@ -52,7 +52,7 @@ LOST = (
         reason=Reason.VEHICLE_OUTRUNS,
         phases=frozenset({Phase.FOLLOW, Phase.RETURN}),
         is_true=outruns,
-        hold_s=lambda _, c: c.chase.driving_hold_s,
+        hold_s=driving_hold_s,
     ),
 )
 """The vehicle is not heard, cannot be believed, or cannot be followed."""

@@ -16,7 +16,7 @@ from companion.landing.state.memory import ControlMemory, Held, VehicleMemory
 from companion.landing.state.step_data import StepInputs, System
 from companion.planning.guidance import ReferenceState
 from companion.situation.phases import Event, Phase
-from companion.situation.situation import Drone, Situation, vehicle_stands
+from companion.situation.situation import Drone, Situation, driving_hold_s, vehicle_stands
 from companion.vehicle.pad import PadPath
 from link.records import replace
 
@@ -104,7 +104,7 @@ CARRIED_OFF = Condition(
     reason=Reason.RIDES_ALONG,
     phases=frozenset({Phase.TAKEOFF}),
     is_true=_is_carried_off,
-    hold_s=lambda _, c: c.chase.driving_hold_s,
+    hold_s=driving_hold_s,
     cause=tell_riding,
 )
 """The vehicle drives off before the drone has lifted off."""
