@@ -8,7 +8,8 @@ from link.mavlink.events import AutopilotRestarted, Event, LinkFound, LinkLost, 
 
 _BROADCAST = 0
 LOST_AFTER_NS = 3_000_000_000  # of silence: three of the autopilot's heartbeats
-_BEATS_LOST_NS = 6_000_000_000  # six of them among other messages: with one in five lost, that is one case in 15,000
+_MODE_UNKNOWN_NS = 6_000_000_000  # six heartbeats, lost among other messages, where nothing else tells the mode
+_TELL_MODE = frozenset({mavlink.MAVLINK_MSG_ID_HEARTBEAT, mavlink.MAVLINK_MSG_ID_CURRENT_MODE})
 _JUMP_NS = 1_000_000_000  # boot time falling back by more is a restart, by less a late message
 _JUMP_CONFIRMATIONS = 3  # so many messages in a row have to say so
 
@@ -78,7 +79,7 @@ class Peer:
         """Systems of further autopilots that were heard."""
         self._own = own
         self._requests: list[Message] = []
-        self._last_heard_ns = self._last_beat_ns = 0
+        self._last_heard_ns = self._last_mode_ns = 0
         self._other_told: int | None = None
 
     def accepts(self, message: Message) -> bool:
@@ -106,18 +107,19 @@ class Peer:
     def heard(self, message: Message, t_ns: int) -> list[Event]:
         """Takes note of an accepted message; returns what it says about the link."""
         events: list[Event] = []
+        if message.get_msgId() in _TELL_MODE:
+            self._last_mode_ns = t_ns
         if is_autopilot_heartbeat(message):
-            self._last_beat_ns = t_ns
             events = self._heartbeat(message, t_ns)
-        if self.autopilot is not None and not self.is_up and t_ns - self._last_beat_ns <= _BEATS_LOST_NS:
+        if self.autopilot is not None and not self.is_up and t_ns - self._last_mode_ns <= _MODE_UNKNOWN_NS:
             events.append(LinkRegained(t_ns=t_ns, silence_ns=t_ns - self._last_heard_ns))
             self.is_up = True
         self._last_heard_ns = t_ns
         return events
 
     def poll(self, t_ns: int) -> list[Event]:
-        """Tells when the autopilot has been silent for too long, or has told no mode: only heartbeats tell that."""
-        is_heard = t_ns - self._last_heard_ns <= LOST_AFTER_NS and t_ns - self._last_beat_ns <= _BEATS_LOST_NS
+        """Tells when the autopilot has been silent, or has not told its mode, for too long."""
+        is_heard = t_ns - self._last_heard_ns <= LOST_AFTER_NS and t_ns - self._last_mode_ns <= _MODE_UNKNOWN_NS
         if not self.is_up or is_heard:
             return []
         self.is_up = False

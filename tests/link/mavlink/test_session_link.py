@@ -123,6 +123,16 @@ def test_six_missing_heartbeats_among_other_messages_are_a_lost_link_until_the_n
     assert run.session.link_up
 
 
+def test_link_lasts_while_the_mode_is_told_without_heartbeats() -> None:
+    run = pair()
+    run.run(5.0)
+    run.autopilot.left_out = frozenset({mavlink.MAVLINK_MSG_ID_HEARTBEAT})
+    for _ in range(10):
+        run.autopilot.send(mavlink.MAVLink_current_mode_message(0, 6 << 16, 6 << 16))
+        assert not of_kind(run.run(1.0), LinkLost)
+    assert len(of_kind(run.run(10.0), LinkLost)) == 1
+
+
 def test_clocks_of_a_running_link_map_to_utc_within_2_ms_at_any_drift() -> None:
     for drift in (-0.025, 0.025):
         run = pair(drift)
